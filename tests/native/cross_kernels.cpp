@@ -336,6 +336,8 @@ int main() {
     check_lines();
     check_splats(kernels);
     check_clusters(kernels);
+    check_pixels(kernels);
+    check_noisy_rows(kernels);
     check_paths(kernels);
     check_emitters(kernels);
     check_points(kernels);

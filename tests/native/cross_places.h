@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <vector>
 
@@ -126,6 +127,67 @@ inline void check_paths(const Kernels& kernels) {
         kernels.sample_paths(seeds.data(), samples.data(), uint32_t(run.set), count, xs, ys);
         std::fill(xs + count, xs + room, 0.0f);
         std::fill(ys + count, ys + room, 0.0f);
+    });
+}
+
+inline void check_pixels(const Kernels& kernels) {
+    constexpr int count = 203, room = count + stream_alignment;
+    all_sets("find_places", [&](Case& run) {
+        CameraRays rays{.orthographic = run.set % 2 == 1, .near = 0.5, .far = 20, .width = 0.01};
+        for (double* way : {rays.first, rays.column, rays.row, rays.back, rays.eye})
+            for (int c = 0; c < 3; ++c) way[c] = double(run.random.number(-1, 1));
+        rays.towards[2] = 1;
+        std::vector<int32_t> columns(room), rows(room);
+        for (int i = 0; i < room; ++i) {
+            columns[size_t(i)] = 7 * i;
+            rows[size_t(i)] = i / 16;
+        }
+        const auto bits = [&] { return run.filled<uint32_t>(room, [&] { return run.random.bits(); }); };
+        const PixelSurfaces pixels{columns.data(), rows.data(), run.floats(room, 0.01f, 0.9f),
+                                   bits(),         bits(),      bits(),
+                                   bits()};
+        CameraPlaces to;
+        std::vector<float*> outputs;
+        const auto output = [&](float*& values) {
+            values = run.output<float>(room, Kind::floats);
+            outputs.push_back(values);
+        };
+        for (auto* vector : {&to.position, &to.view, &to.normal, &to.albedo})
+            for (float*& values : *vector) output(values);
+        for (float*& values : to.parameters) output(values);
+        output(to.footprint);
+        kernels.find_places(rays, pixels, count, to);
+        for (float* values : outputs) std::fill(values + count, values + room, 0.0f);
+    });
+}
+
+inline void check_noisy_rows(const Kernels& kernels) {
+    constexpr int pixels = NoisyRow::pixels;
+    all_sets("add_noisy_row", [&](Case& run) {
+        NoisyTile tile;
+        auto* beside = run.output<float>(4 * pixels, Kind::floats);
+        std::fill(beside, beside + 4 * pixels, 0.0f);
+        const auto bits = [&] { return run.random.bits(); };
+        for (int i = 0; i < 15; ++i) {
+            NoisyRow row;
+            row.sample = run.floats(4 * pixels, 0, 2);
+            row.normal = run.filled<uint32_t>(pixels, bits);
+            row.material = run.filled<uint32_t>(pixels, bits);
+            row.albedo = run.filled<uint64_t>(pixels, bits);
+            row.depth = run.floats(pixels, -0.2f, 1);
+            if (run.set % 3 == 1) row.open = run.floats(pixels, 0, 1);
+            row.end_of_lit = 100;
+            row.catcher = 120;
+            row.orthographic = run.set % 2 == 1;
+            row.over_nothing = run.set % 4 < 2;
+            BesideNoisy found;
+            kernels.add_noisy_row(row, i % 3, tile, found);
+            for (int c = 0; c < 4; ++c)
+                for (int x = 0; x < pixels; ++x) beside[pixels * c + x] += found.radiance[c][x];
+        }
+        constexpr size_t floats = offsetof(NoisyTile, frames), rest = sizeof tile - floats;
+        std::memcpy(run.output<float>(floats / sizeof(float), Kind::floats), &tile, floats);
+        std::memcpy(run.output<uint8_t>(rest, Kind::bits), reinterpret_cast<const char*>(&tile) + floats, rest);
     });
 }
 

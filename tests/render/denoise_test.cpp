@@ -2,16 +2,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/luminance.h"
+#include "easypbr/core/octahedral.h"
+#include "easypbr/native/shaders.h"
 #include "easypbr/render/denoise/edge_avoiding_filter.h"
 #include "easypbr/render/denoise/open_image_denoise.h"
+#include "easypbr/render/frame/surface_kind.h"
 
 namespace easypbr::render::denoise_test {
 namespace {
@@ -36,15 +41,57 @@ struct Made {
         light.pixels<Vec4>()[i] =
             Vec4(value * reflectance.x(), value * reflectance.y(), value * reflectance.z(),
                  std::pow(deviation * luminance(reflectance), 2.0f));
-        SurfaceMean& surface = pixels.make(pixels.grid().tile_at(x, y))[TileGrid::place_of(x, y)].surface;
-        surface = {};
-        for (int frame = 0; frame < frames; ++frame) surface.add(normal, reflectance, -1);
+        native::NoisyTile& tile = pixels.make(pixels.grid().tile_at(x, y));
+        const size_t place = TileGrid::place_of(x, y);
+        for (int c = 0; c < 3; ++c) {
+            tile.normal[c][place] = uint16_t(std::lrint((normal[c] + 1) / 2 * 65535));
+            tile.reflectance[c][place] = uint16_t(std::lrint(reflectance[c] * 65535));
+        }
+        tile.depth[place] = -1;
+        tile.frames[place] = frames;
     }
     NoisyLight noisy() const { return {light, pixels, scratch}; }
 
     Target light, scratch;
-    TilePixels<NoisyPixel> pixels;
+    TileValues<native::NoisyTile> pixels;
     std::mt19937 random{1};
+};
+
+/// A row of a frame with surfaces at some of its pixels, under a light of 1.
+struct FrameRow {
+    void set(int x, const Vec3& normal, const Vec3& color, float depth,
+             SurfaceKind kind = SurfaceKind::lit) {
+        const auto i = size_t(x);
+        const Vec2 encoded = (oct_encode(normal) + Vec2(1, 1)) * 32767.5f;
+        normals[i] = uint32_t(std::lrint(encoded.x())) | uint32_t(std::lrint(encoded.y())) << 16;
+        albedos[i] = 0;
+        for (int c = 0; c < 3; ++c) albedos[i] |= uint64_t(std::lrint(color[c] * 65535)) << (16 * c);
+        // Metals send back their colour alone.
+        materials[i] = 255u | uint32_t(kind) << 24;
+        depths[i] = depth;
+        samples[i] = Vec4::Ones();
+    }
+    Vec3 normal_of(int x) const {
+        const uint32_t bits = normals[size_t(x)];
+        return oct_decode(Vec2(float(bits & 0xffff), float(bits >> 16)) / 32767.5f - Vec2(1, 1));
+    }
+    native::NoisyRow row() const {
+        native::NoisyRow row;
+        row.sample = samples.data()->data();
+        row.normal = normals.data();
+        row.material = materials.data();
+        row.albedo = albedos.data();
+        row.depth = depths.data();
+        row.end_of_lit = int(SurfaceKind::display);
+        row.catcher = int(SurfaceKind::ground_catcher);
+        row.over_nothing = true;
+        return row;
+    }
+
+    std::vector<Vec4> samples = std::vector<Vec4>(native::NoisyRow::pixels, Vec4::Zero());
+    std::array<uint32_t, native::NoisyRow::pixels> normals{}, materials{};
+    std::array<uint64_t, native::NoisyRow::pixels> albedos{};
+    std::array<float, native::NoisyRow::pixels> depths{};
 };
 
 float at(const Target& target, int x, int y) {
@@ -68,24 +115,56 @@ std::pair<double, double> statistics(const Target& target) {
 // with a weight of k / 1000: 0.29 sqrt(1000 / 3) = 5 steps in all, 8e-5. Three of these deviations
 // are 2.4e-4, of normals, which are twice as long, 4.8e-4; guides of 8 bits tell 3.9e-3 apart.
 TEST(Denoise, SurfacesAreMeansOfTheirFrames) {
-    SurfaceMean surface;
+    native::NoisyTile tile;
     std::mt19937 random{1};
     std::uniform_real_distribution<float> value(0, 1);
     Vec3d normal(0, 0, 0), reflectance(0, 0, 0);
     double depth = 0;
-    constexpr int count = 1000;
+    constexpr int count = 1000, y = 3, x = 5;
+    constexpr size_t place = y * native::NoisyTile::side + x;
     for (int frame = 0; frame < count; ++frame) {
-        const Vec3 n(2 * value(random) - 1, 2 * value(random) - 1, 1), color(value(random), 0, 1);
-        const float d = -10 * value(random);
-        surface.add(n, color, d);
-        normal += n.cast<double>() / count;
+        const Vec3 n = Vec3(2 * value(random) - 1, 2 * value(random) - 1, 1).normalized(),
+                   color(value(random), 0, 1);
+        const float d = value(random) + 0.01f;
+        FrameRow row;
+        row.set(x, n, color, d);
+        native::BesideNoisy beside;
+        EXPECT_FALSE(native::add_noisy_row(row.row(), y, tile, beside));
+        normal += row.normal_of(x).cast<double>() / count;
         reflectance += color.cast<double>() / count;
-        depth += double(d) / count;
+        depth += std::log2(double(d)) / count;
     }
+    const SurfaceMean surface = surface_of(tile, place);
     EXPECT_EQ(surface.frames, unsigned(count));
     EXPECT_LT((surface.mean_normal().cast<double>() - normal).norm(), 4.8e-4);
     EXPECT_LT((surface.mean_reflectance().cast<double>() - reflectance).norm(), 2.4e-4);
     EXPECT_NEAR(surface.depth, depth, 1e-4);
+    for (size_t i = 0; i < native::NoisyTile::pixels; ++i)
+        EXPECT_EQ(tile.frames[i], i == place ? unsigned(count) : 0u);
+}
+
+// A pixel keeps the kind of noise of its first frame: light of the other kind goes beside it. 4 of a lit
+// surface and 2 of a ground that catches shadows over nothing; the coverage of the latter is noisy.
+TEST(Denoise, OtherKindsOfNoiseGoBeside) {
+    native::NoisyTile tile;
+    native::BesideNoisy beside;
+    const auto add = [&](SurfaceKind kind, float light, float coverage) {
+        FrameRow row;
+        row.set(7, Vec3(0, 0, 1), Vec3(0.5f, 0.5f, 0.5f), 0.5f, kind);
+        row.samples[7] = Vec4(light, light, light, coverage);
+        return native::add_noisy_row(row.row(), 0, tile, beside);
+    };
+    EXPECT_FALSE(add(SurfaceKind::lit, 4, 1));
+    EXPECT_EQ(beside.taken[7], int(Noisy::radiance));
+    EXPECT_TRUE(add(SurfaceKind::ground_catcher, 2, 0.25f));
+    EXPECT_EQ(beside.taken[7], int(Noisy::nothing));
+    EXPECT_EQ(beside.radiance[0][7], 2);
+    EXPECT_EQ(beside.radiance[3][7], 0.25f);
+    const NoisyPixel pixel = pixel_of(tile, 7);
+    EXPECT_EQ(pixel.light, Vec3(4, 4, 4));
+    EXPECT_NEAR(pixel.squares, 16, 1e-5);
+    EXPECT_EQ(pixel.alpha, 1);
+    EXPECT_EQ(pixel.frames, 1u);
 }
 
 // Even light stays even, with a fraction of its noise: the mean over a part of the picture within 1 %, and

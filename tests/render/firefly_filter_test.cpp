@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "easypbr/render/raytrace/firefly_filter.h"
@@ -36,11 +37,17 @@ PathRadiance beyond(int x, int y, const Vec3& light) {
 }
 
 /// What pixels have after a frame: what stays where it was found, and what is spread.
-Pixels drawn(FireflyFilter& filter, PathRadiance radiance, const FireflyFilter::Reflectance& reflectance) {
+template <class Reflectance>
+Pixels drawn(FireflyFilter& filter, PathRadiance radiance, Reflectance&& reflectance) {
     filter.begin_frame(size, most);
     filter.take({0, 0, size.x(), size.y()}, radiance);
     Pixels pixels = radiance.within;
-    filter.spread(reflectance, [&](int x, int y, const Vec3& light) { pixels[index_of(x, y)] += light; });
+    const auto reflect = [&](int y, std::span<Vec3> row) {
+        for (size_t x = 0; x < row.size(); ++x) row[x] = reflectance(int(x), y);
+    };
+    filter.spread(reflect, [&](int y, std::span<const Vec3> light) {
+        for (size_t x = 0; x < light.size(); ++x) pixels[index_of(int(x), y)] += light[x];
+    });
     return pixels;
 }
 
@@ -142,6 +149,10 @@ TEST(FireflyFilter, BearsSurfacesThatGo) {
     }
 }
 
+void white(int, std::span<Vec3> row) {
+    std::ranges::fill(row, Vec3(1, 1, 1));
+}
+
 // Of light that would show as a spot the rest is lost.
 TEST(FireflyFilter, SpreadsNoMoreThanIsAllowed) {
     FireflyFilter filter;
@@ -149,8 +160,9 @@ TEST(FireflyFilter, SpreadsNoMoreThanIsAllowed) {
     PathRadiance radiance = beyond(18, 10, Vec3(12, 12, 12));
     filter.take({0, 0, size.x(), size.y()}, radiance);
     Pixels pixels = radiance.within;
-    filter.spread([](int, int) { return Vec3(1, 1, 1); },
-                  [&](int x, int y, const Vec3& light) { pixels[index_of(x, y)] += light; });
+    filter.spread(white, [&](int y, std::span<const Vec3> light) {
+        for (size_t x = 0; x < light.size(); ++x) pixels[index_of(int(x), y)] += light[x];
+    });
     EXPECT_NEAR(sum_of(pixels).x(), 3, 1e-5);
 }
 
@@ -165,7 +177,7 @@ TEST(FireflyFilter, SpreadsWhatIsEven) {
         filter.take({0, 0, size.x(), size.y()}, of_frame);
         // In the middle: at borders light is spread inwards.
         EXPECT_EQ(of_frame.within[index_of(30, 22)].x(), 0) << frame;
-        filter.spread([](int, int) { return Vec3(1, 1, 1); }, [](int, int, const Vec3&) {});
+        filter.spread(white, [](int, std::span<const Vec3>) {});
     }
 }
 

@@ -302,6 +302,44 @@ struct CameraPlaces {
 using FindPlaces = void (*)(const CameraRays& rays, const PixelSurfaces& pixels, int count,
                             const CameraPlaces& places);
 
+/// Noisy light of a square of a picture, with an array for each number, row by row: sums and means over the
+/// frames in which a pixel has some. Steps of 1 / 65535 are finer than denoisers tell apart.
+struct NoisyTile {
+    static constexpr int side = 16, pixels = side * side;
+
+    float light[3][pixels] = {};           ///< sum of the radiance, or of the coverage in each channel
+    float squares[pixels] = {};            ///< sum, of the luminance
+    float alpha[pixels] = {};              ///< sum, by what overlays leave; 0 where coverage is noisy
+    float depth[pixels] = {};              ///< mean of its log2, of orthographic pictures of itself
+    uint32_t frames[pixels] = {};          ///< that have noisy light
+    uint16_t normal[3][pixels] = {};       ///< mean world normal, half of 65535 for 0
+    uint16_t reflectance[3][pixels] = {};  ///< mean, linear, 65535 for 1
+    uint8_t noisy[pixels] = {};            ///< what is: 0 nothing, 1 radiance, 2 coverage
+};
+static_assert(sizeof(NoisyTile) == 41 * NoisyTile::pixels, "there is one for each pixel");
+
+/// A frame's pixels of a row of a tile.
+struct NoisyRow {
+    static constexpr int pixels = NoisyTile::side;
+
+    const float* sample = nullptr;                                        ///< r g b a
+    const uint32_t *normal = nullptr, *material = nullptr;                ///< as in the targets
+    const uint64_t* albedo = nullptr;                                     ///< likewise
+    const float *depth = nullptr, *open = nullptr;                        ///< open: what overlays leave; null: all
+    int end_of_lit = 0, catcher = 0;  ///< codes of surfaces: light falls on those below the first
+    bool orthographic = false;
+    bool over_nothing = false;  ///< of shadow catchers the coverage is noisy
+};
+
+/// What is not noisy of a row, and of which pixels light was taken, as NoisyTile::noisy.
+struct BesideNoisy {
+    float radiance[4][NoisyRow::pixels];
+    int32_t taken[NoisyRow::pixels];
+};
+
+/// Adds row y of a tile. Whether BesideNoisy::radiance has anything.
+using AddNoisyRow = bool (*)(const NoisyRow& row, int y, NoisyTile& tile, BesideNoisy& beside);
+
 /// Emissive triangles, so few that each place weighs them all: an array for each number, in the frame of the
 /// places.
 struct FewEmitters {
@@ -363,6 +401,7 @@ struct Kernels {
     BlendSplats blend_splats;
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
+    AddNoisyRow add_noisy_row;
     FindPlaces find_places;
     SamplePaths sample_paths;
     SampleEmitters sample_emitters;

@@ -272,6 +272,10 @@ int set_up_points(const PointBatch& points, PointScreen& screen) {
     return chosen_set().kernels->set_up_points(points, screen);
 }
 
+bool add_noisy_row(const NoisyRow& row, int y, NoisyTile& tile, BesideNoisy& beside) {
+    return chosen_set().kernels->add_noisy_row(row, y, tile, beside);
+}
+
 void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int count, const CameraPlaces& places) {
     chosen_set().kernels->find_places(rays, pixels, count, places);
 }

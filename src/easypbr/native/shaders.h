@@ -86,6 +86,9 @@ int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 /// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.
 int set_up_points(const PointBatch& points, PointScreen& screen);
 
+/// Adds a frame's pixels to those of a tile, as AddNoisyRow. On the calling thread.
+bool add_noisy_row(const NoisyRow& row, int y, NoisyTile& tile, BesideNoisy& beside);
+
 /// The places that pixels show and their surfaces, as FindPlaces. On the calling thread.
 void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int count, const CameraPlaces& places);
 

@@ -33,16 +33,14 @@ INLINE void half_of_places(const CameraRays& rays, const PixelSurfaces& pixels, 
     store_half(to.footprint + first, rays.orthographic ? HalfDoubles{} + rays.width : z * rays.width);
 }
 
-/// See render's oct_decode().
-INLINE void decode_normals(vuint bits, float* const (&to)[3], int first) {
+/// As oct_decode(), of two numbers of 16 bits; unit.
+INLINE vec3 decoded_normal(vuint bits) {
     vfloat x = to_float(bits & 0xffffu) / 32767.5f - 1.0f, y = to_float(bits >> 16) / 32767.5f - 1.0f;
     const vfloat z = 1.0f - abs(x) - abs(y), fold = max(-z, 0.0f);
     x = select(x >= 0.0f, x - fold, x + fold);
     y = select(y >= 0.0f, y - fold, y + fold);
     const vfloat length = sqrt(x * x + (y * y + z * z));
-    store_lanes(to[0], size_t(first), x / length);
-    store_lanes(to[1], size_t(first), y / length);
-    store_lanes(to[2], size_t(first), z / length);
+    return {x / length, y / length, z / length};
 }
 
 inline void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int count,
@@ -58,7 +56,8 @@ inline void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int
                 rays.orthographic ? vfloat(rays.towards[c]) : -(vfloat(load<Floats>(away[c])) / length);
             store_lanes(to.view[c], size_t(first), view);
         }
-        decode_normals(load<Uints>(pixels.normal + first), to.normal, first);
+        const vec3 normal = decoded_normal(load<Uints>(pixels.normal + first));
+        for (int c = 0; c < 3; ++c) store_lanes(to.normal[c], size_t(first), normal[c]);
         const vuint red_green = load<Uints>(pixels.red_green + first),
                     blue = load<Uints>(pixels.blue + first), material = load<Uints>(pixels.material + first);
         store_lanes(to.albedo[0], size_t(first), to_float(red_green & 0xffffu) / 65535.0f);

@@ -1,20 +1,18 @@
 // What denoisers are given.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/kernels.h"
 #include "easypbr/render/frame/target.h"
 #include "easypbr/render/frame/tile_pixels.h"
 
 namespace easypbr::render {
 
-/// What guides denoisers: means over the frames that show a surface with noisy light at a pixel. Steps of
-/// 1 / 65535 are finer than they tell apart.
+/// What guides denoisers: means over the frames that show a surface with noisy light at a pixel.
 struct SurfaceMean {
     using Steps = std::array<uint16_t, 3>;
 
@@ -23,47 +21,44 @@ struct SurfaceMean {
     Steps reflectance{};  ///< linear, 65535 for 1
     uint32_t frames = 0;
 
-    static Vec3 values(const Steps& steps) { return Vec3(steps[0], steps[1], steps[2]) / most; }
+    static Vec3 values(const Steps& steps) { return Vec3(steps[0], steps[1], steps[2]) / 65535; }
     Vec3 mean_normal() const { return 2 * values(normal) - Vec3::Ones(); }
     Vec3 mean_reflectance() const { return values(reflectance); }
-
-    void add(const Vec3& frame_normal, const Vec3& frame_reflectance, float frame_depth) {
-        const float part = 1 / float(++frames);
-        move(normal, (frame_normal + Vec3::Ones()) / 2, part);
-        move(reflectance, frame_reflectance, part);
-        depth += (frame_depth - depth) * part;
-    }
-
-  private:
-    static constexpr float most = 65535;
-    static void move(Steps& mean, const Vec3& to, float part) {
-        for (int i = 0; i < 3; ++i) {
-            const auto from = float(mean[size_t(i)]);
-            const float moved = from + (std::clamp(to[i], 0.0f, 1.0f) * most - from) * part;
-            mean[size_t(i)] = uint16_t(std::lrint(moved));
-        }
-    }
 };
 
 /// Of what a pixel's light is taken note: that of its first frame with noise.
 enum class Noisy : uint8_t { nothing, radiance, coverage };
 
-/// Sums over the frames that SurfaceMean is of.
+/// Sums over the frames that have noisy light; see native::NoisyTile.
 struct NoisyPixel {
     Vec3 light = Vec3::Zero();  ///< radiance, or the coverage in each channel
     float squares = 0;          ///< of the luminance
     float alpha = 0;            ///< weighted by the transmittance of overlays; 0 where coverage is noisy
-    SurfaceMean surface;
+    uint32_t frames = 0;
     Noisy noisy = Noisy::nothing;
 };
-static_assert(sizeof(NoisyPixel) == 44, "there is one for each pixel");
+
+inline NoisyPixel pixel_of(const native::NoisyTile& tile, size_t place) {
+    return {{tile.light[0][place], tile.light[1][place], tile.light[2][place]},
+            tile.squares[place],
+            tile.alpha[place],
+            tile.frames[place],
+            Noisy(tile.noisy[place])};
+}
+
+inline SurfaceMean surface_of(const native::NoisyTile& tile, size_t place) {
+    const auto steps = [&](const auto& of) {
+        return SurfaceMean::Steps{of[0][place], of[1][place], of[2][place]};
+    };
+    return {tile.depth[place], steps(tile.normal), steps(tile.reflectance), tile.frames[place]};
+}
 
 /// Light of the surfaces that a picture shows, and what they are.
 struct NoisyLight {
     /// In host memory, RGBA32F and whole: mean radiance; a: variance of that mean's luminance. 0 where no
     /// surface is.
     const Target& light;
-    const TilePixels<NoisyPixel>& pixels;
+    const TileValues<native::NoisyTile>& pixels;
     /// RGBA32F, undefined; for what denoisers write.
     const Target& scratch;
     bool is_white = false;  ///< nothing of the light is reflected: colours of surfaces do not matter
@@ -75,15 +70,14 @@ struct NoisyLight {
     /// Calls visit(index, surface) for each pixel, by its index row by row, on all cores.
     template <class Visit>
     void each(Visit&& visit) const {
-        static const SurfaceMean none;
         const TileGrid& grid = pixels.grid();
         parallel_for(grid.count(), 64, [&](size_t tile) {
-            const NoisyPixel* of = pixels.of(tile);
+            const native::NoisyTile* of = pixels.of(tile);
             const PixelRect area = grid.area_of(tile);
             for (int y = area.y; y < area.y + area.height; ++y)
                 for (int x = area.x; x < area.x + area.width; ++x)
                     visit(size_t(y) * size_t(grid.size().x()) + size_t(x),
-                          of ? of[TileGrid::place_of(x, y)].surface : none);
+                          of ? surface_of(*of, TileGrid::place_of(x, y)) : SurfaceMean());
         });
     }
 };

@@ -5,19 +5,17 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "easypbr/core/luminance.h"
-#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/shaders.h"
 #include "easypbr/render/frame/held_pixels.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
-
-/// A ground that has faded further is as good as not there.
-constexpr float least_coverage = 1.0f / 64;
 
 /// Less than this of a frame is as good as nothing.
 constexpr float least_open = 1e-4f;
@@ -27,16 +25,9 @@ bool is_noisy(uint8_t kind) {
     return is_lit_by_scene(kind) || kind == uint8_t(SurfaceKind::ground_catcher);
 }
 
-/// What part of the light a surface sends back, about, by its base colour and metallic: diffuse and at normal
-/// incidence.
-Vec3 reflectance(const Vec3& base, float metallic) {
-    constexpr float dielectric = 0.04f;
-    return (base + Vec3::Constant(dielectric * (1 - metallic))).cwiseMin(1.0f);
-}
-
 /// Of a mean's luminance, by the sample variance; of one frame its own square.
 float variance_of(const NoisyPixel& pixel) {
-    const auto count = float(pixel.surface.frames);
+    const auto count = float(pixel.frames);
     const float bright = luminance(pixel.light) / count, squares = pixel.squares / count;
     return count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
 }
@@ -71,40 +62,85 @@ class RadianceMean::FrameSurfaces {
         : albedo_(surfaces.albedo),
           normal_(surfaces.normal),
           material_(surfaces.material),
-          depth_(surfaces.depth),
-          orthographic_(frame.orthographic()),
-          over_nothing_(!frame.resolved->settings.background.shows_environment()) {}
-
-    /// What is noisy of a sample.
-    Noisy kind_of(int x, int y, const Vec4& sample) const {
-        const float* depth = depth_.at(x, y);
-        if (!depth || *depth <= 0) return Noisy::nothing;
-        const uint8_t kind = (*material_.at(x, y))[3];
-        if (!is_noisy(kind) || (is_lit_by_scene(kind) && sample.w() < least_coverage)) return Noisy::nothing;
-        return !is_lit_by_scene(kind) && over_nothing_ ? Noisy::coverage : Noisy::radiance;
+          depth_(surfaces.depth) {
+        row_.end_of_lit = int(SurfaceKind::display);
+        row_.catcher = int(SurfaceKind::ground_catcher);
+        row_.orthographic = frame.orthographic();
+        row_.over_nothing = !frame.resolved->settings.background.shows_environment();
     }
-    /// Of a sample that is noisy.
-    void add_to(SurfaceMean& mean, int x, int y, const Vec4& sample) const {
-        const std::array<uint8_t, 4>& m = *material_.at(x, y);
-        const std::array<uint16_t, 4>& a = *albedo_.at(x, y);
-        const std::array<uint16_t, 2>& n = *normal_.at(x, y);
-        const float depth = *depth_.at(x, y);
-        // Where a ground fades its radiance does, as if it reflected less.
-        const Vec3 reflects = is_lit_by_scene(m[3])
-                                  ? Vec3(reflectance(Vec3(a[0], a[1], a[2]) / 65535.0f, float(m[0]) / 255) *
-                                         std::clamp(sample.w(), 0.0f, 1.0f))
-                                  : Vec3(Vec3::Ones());
-        // The depth of orthographic pictures is linear in [0, 1]: what is logarithmic elsewhere.
-        mean.add(oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1)), reflects,
-                 orthographic_ ? depth : std::log2(depth));
+
+    bool is_noisy(int x, int y) const {
+        const float* depth = depth_.at(x, y);
+        return depth && *depth > 0 && render::is_noisy(uint8_t(*material_.at(x, y) >> 24));
     }
 
   private:
-    HeldPixels<std::array<uint16_t, 4>> albedo_;
-    HeldPixels<std::array<uint16_t, 2>> normal_;
-    HeldPixels<std::array<uint8_t, 4>> material_;
+    friend RowOfFrame;
+    HeldPixels<uint64_t> albedo_;
+    HeldPixels<uint32_t> normal_, material_;
     HeldPixels<float> depth_;
-    bool orthographic_, over_nothing_;
+    native::NoisyRow row_;
+};
+
+/// A row of a tile. What is not held, or lies outside of an area, shows no surface and no light.
+class RadianceMean::RowOfFrame {
+  public:
+    RowOfFrame(const FrameSurfaces& of, const HeldPixels<Vec4>& sample, std::span<const float> open)
+        : of_(of), sample_(sample), open_(open), row_(of.row_) {}
+
+    /// Pixels [x, x + width) of it; `left`: the tile's first.
+    const native::NoisyRow& at(int left, const PixelRect& area, size_t index) {
+        constexpr int last = native::NoisyRow::pixels - 1;
+        const int y = area.y;
+        const bool is_whole = area.width > last && of_.depth_.at(left, y) && of_.depth_.at(left + last, y);
+        row_.open = open_.empty() ? nullptr : &open_[index];
+        if (is_whole) {
+            row_.sample = sample_.at(left, y)->data();
+            row_.normal = of_.normal_.at(left, y);
+            row_.material = of_.material_.at(left, y);
+            row_.albedo = of_.albedo_.at(left, y);
+            row_.depth = of_.depth_.at(left, y);
+        } else {
+            copy(left, area, index);
+        }
+        return row_;
+    }
+
+  private:
+    void copy(int left, const PixelRect& area, size_t index) {
+        samples_.fill(Vec4::Zero());
+        depths_.fill(0);
+        opens_.fill(1);
+        for (int x = area.x; x < area.x + area.width; ++x) {
+            const auto i = size_t(x - left);
+            samples_[i] = *sample_.at(x, area.y);
+            if (!open_.empty()) opens_[i] = open_[index + size_t(x - area.x)];
+            const float* depth = of_.depth_.at(x, area.y);
+            if (!depth) continue;
+            depths_[i] = *depth;
+            normals_[i] = *of_.normal_.at(x, area.y);
+            materials_[i] = *of_.material_.at(x, area.y);
+            albedos_[i] = *of_.albedo_.at(x, area.y);
+        }
+        row_.sample = samples_.data()->data();
+        row_.normal = normals_.data();
+        row_.material = materials_.data();
+        row_.albedo = albedos_.data();
+        row_.depth = depths_.data();
+        if (row_.open) row_.open = opens_.data();
+    }
+
+    template <class T>
+    using Row = std::array<T, native::NoisyRow::pixels>;
+
+    const FrameSurfaces& of_;
+    const HeldPixels<Vec4>& sample_;
+    std::span<const float> open_;
+    native::NoisyRow row_;
+    Row<Vec4> samples_;
+    Row<uint32_t> normals_{}, materials_{};
+    Row<uint64_t> albedos_{};
+    Row<float> depths_, opens_;
 };
 
 void RadianceMean::begin(Vec2i size, bool with_surfaces) {
@@ -154,47 +190,58 @@ void RadianceMean::begin_weights() {
     // Nothing was over the frames before.
     weights_.assign(open_.size(), Vec2(float(frames_), 0));
     each({0, 0, tiles_.size().x(), tiles_.size().y()},
-         [&](size_t i, int x, int y) { weights_[i].y() = float(noisy_.at(x, y).surface.frames); });
+         [&](size_t i, int x, int y) {
+             const native::NoisyTile* tile = noisy_.of(tiles_.tile_at(x, y));
+             weights_[i].y() = tile ? float(tile->frames[TileGrid::place_of(x, y)]) : 0.0f;
+         });
 }
 
 void RadianceMean::add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces) {
+    bool is_noisy = surfaces && noisy_.of(tile);
+    if (surfaces && !is_noisy)
+        each(area, [&](size_t, int x, int y) { is_noisy = is_noisy || surfaces->is_noisy(x, y); });
+    if (!is_noisy) return add_beside(tile, area);
+    native::NoisyTile& noisy = noisy_.make(tile);
     const HeldPixels<Vec4> sample(sample_);
-    each(area, [&](size_t i, int x, int y) {
-        const Vec4& of_frame = *sample.at(x, y);
+    RowOfFrame rows(*surfaces, sample, open_);
+    const int left = tiles_.area_of(tile).x;
+    native::BesideNoisy beside;
+    for (int y = area.y; y < area.y + area.height; ++y) {
+        const PixelRect row{area.x, y, area.width, 1};
+        const bool has_beside = native::add_noisy_row(rows.at(left, row, index_of(area.x, y)),
+                                                      y % TileGrid::side, noisy, beside);
+        add_row(tile, row, beside, has_beside);
+    }
+}
+
+void RadianceMean::add_row(size_t tile, const PixelRect& row, const native::BesideNoisy& of_row,
+                           bool has_beside) {
+    if (!has_beside && weights_.empty() && coverage_.empty()) return;
+    const HeldPixels<Vec4> sample(sample_);
+    each(row, [&](size_t i, int x, int y) {
         const size_t place = TileGrid::place_of(x, y);
-        Vec4 beside = open_part(i) * of_frame;
-        const Noisy kind = surfaces ? surfaces->kind_of(x, y, of_frame) : Noisy::nothing;
-        if (kind != Noisy::nothing) {
-            NoisyPixel& pixel = noisy_.make(tile)[place];
-            if (pixel.noisy == Noisy::nothing) pixel.noisy = kind;
-            if (pixel.noisy == kind) {
-                beside = add_to_pixel(pixel, i, of_frame);
-                surfaces->add_to(pixel.surface, x, y, of_frame);
-            }
-        }
-        if (!weights_.empty()) weights_[i].x() += open_part(i);
+        const auto at = size_t(x % TileGrid::side);
+        const auto taken = Noisy(of_row.taken[at]);
+        if (!weights_.empty())
+            weights_[i] += Vec2(open_part(i), taken != Noisy::nothing ? open_part(i) : 0.0f);
+        const float coverage = sample.at(x, y)->w();
+        if (!coverage_.empty() && taken == Noisy::radiance)
+            coverage_[i] += Vec2(coverage, coverage * coverage);
+        if (!has_beside) return;
+        const Vec4 beside(of_row.radiance[0][at], of_row.radiance[1][at], of_row.radiance[2][at],
+                          of_row.radiance[3][at]);
         if ((beside.array() != 0).any()) beside_.make(tile)[place].radiance += beside;
     });
 }
 
-Vec4 RadianceMean::add_to_pixel(NoisyPixel& pixel, size_t index, const Vec4& sample) {
-    const float open = open_part(index);
-    const bool is_coverage = pixel.noisy == Noisy::coverage;
-    const Vec3 light = is_coverage ? Vec3(Vec3::Constant(sample.w())) : Vec3(sample.head<3>());
-    const float bright = luminance(light);
-    pixel.light += light;
-    pixel.squares += bright * bright;
-    if (!weights_.empty()) weights_[index].y() += open;
-    Vec4 beside = Vec4::Zero();
-    if (is_coverage) {
-        beside.head<3>() = open * sample.head<3>();
-        if (open != 1) beside.w() = (open - 1) * bright;
-        return beside;
-    }
-    pixel.alpha += open * sample.w();
-    if (!coverage_.empty()) coverage_[index] += Vec2(sample.w(), sample.w() * sample.w());
-    if (open != 1) beside.head<3>() = (open - 1) * light;
-    return beside;
+void RadianceMean::add_beside(size_t tile, const PixelRect& area) {
+    const HeldPixels<Vec4> sample(sample_);
+    each(area, [&](size_t i, int x, int y) {
+        if (!weights_.empty()) weights_[i].x() += open_part(i);
+        const Vec4 beside = open_part(i) * *sample.at(x, y);
+        if ((beside.array() != 0).any())
+            beside_.make(tile)[TileGrid::place_of(x, y)].radiance += beside;
+    });
 }
 
 void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers) {
@@ -216,12 +263,12 @@ void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transf
 
 RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) const {
     TileError error;
-    const NoisyPixel* noisy = noisy_.of(tile);
+    const native::NoisyTile* noisy = noisy_.of(tile);
     if (!noisy) return error;
     const int frames = tiles_.frames_of(tile, frames_);
     each(tiles_.area_of(tile), [&](size_t /*index*/, int x, int y) {
-        const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
-        const uint32_t count = pixel.surface.frames;
+        const NoisyPixel pixel = pixel_of(*noisy, TileGrid::place_of(x, y));
+        const uint32_t count = pixel.frames;
         if (count == 0) return;
         const float deviation = std::sqrt(variance_of(pixel)),
                     bright = exposure * luminance(pixel.light) / float(count);
@@ -281,15 +328,15 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
 void RadianceMean::write_mean(const Target& to, const Target* light, const std::vector<float>& coverage) {
     const auto pixels = to.pixels<Vec4>();
     parallel_for(tiles_.count(), 64, [&](size_t tile) {
-        const NoisyPixel* noisy = noisy_.of(tile);
-        const Sum* beside = beside_.of(tile);
+        const native::NoisyTile* noisy = noisy_.of(tile);
+        const PixelsOfTile<Sum>* beside = beside_.of(tile);
         const auto frames = float(tiles_.frames_of(tile, frames_));
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
             const size_t place = TileGrid::place_of(x, y);
-            Vec4 sum = beside ? beside[place].radiance : Vec4(Vec4::Zero());
-            if (noisy && noisy[place].surface.frames > 0) {
-                const NoisyPixel& pixel = noisy[place];
-                const auto count = float(pixel.surface.frames);
+            Vec4 sum = beside ? (*beside)[place].radiance : Vec4(Vec4::Zero());
+            if (noisy && noisy->frames[place] > 0) {
+                const NoisyPixel pixel = pixel_of(*noisy, place);
+                const auto count = float(pixel.frames);
                 const float open = weights_.empty() ? 1.0f : weights_[i].y() / count;
                 Vec3 seen = pixel.light;
                 if (light) {
@@ -321,12 +368,12 @@ std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfer
     const auto result = denoised(denoising, true, transfers).pixels<Vec4>();
     std::vector<float> changes(result.size());
     parallel_for(tiles_.count(), 64, [&](size_t tile) {
-        const NoisyPixel* noisy = noisy_.of(tile);
+        const native::NoisyTile* noisy = noisy_.of(tile);
         if (!noisy) return;
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
-            const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
+            const NoisyPixel pixel = pixel_of(*noisy, TileGrid::place_of(x, y));
             if (pixel.noisy == Noisy::radiance)
-                changes[i] = luminance(result[i].head<3>()) * float(pixel.surface.frames) - coverage_[i].x();
+                changes[i] = luminance(result[i].head<3>()) * float(pixel.frames) - coverage_[i].x();
         });
     });
     return changes;
@@ -336,12 +383,12 @@ void RadianceMean::write_noisy_coverage() {
     write_noisy_light();
     const auto to = light_.pixels<Vec4>();
     parallel_for(tiles_.count(), 64, [&](size_t tile) {
-        const NoisyPixel* noisy = noisy_.of(tile);
+        const native::NoisyTile* noisy = noisy_.of(tile);
         if (!noisy) return;
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
-            const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
+            const NoisyPixel pixel = pixel_of(*noisy, TileGrid::place_of(x, y));
             if (pixel.noisy != Noisy::radiance) return;
-            const auto count = float(pixel.surface.frames);
+            const auto count = float(pixel.frames);
             const float mean = coverage_[i].x() / count, squares = coverage_[i].y() / count;
             const float variance = count > 1 ? std::max(0.0f, squares - mean * mean) / (count - 1) : squares;
             to[i] = Vec4(mean, mean, mean, variance);
@@ -353,12 +400,13 @@ void RadianceMean::write_noisy_light() {
     light_.write(light_.whole());
     const auto to = light_.pixels<Vec4>();
     parallel_for(tiles_.count(), 64, [&](size_t tile) {
-        const NoisyPixel* noisy = noisy_.of(tile);
+        const native::NoisyTile* noisy = noisy_.of(tile);
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
             to[i].setZero();
-            if (!noisy || noisy[TileGrid::place_of(x, y)].surface.frames == 0) return;
-            const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
-            to[i].head<3>() = pixel.light / float(pixel.surface.frames);
+            const size_t place = TileGrid::place_of(x, y);
+            if (!noisy || noisy->frames[place] == 0) return;
+            const NoisyPixel pixel = pixel_of(*noisy, place);
+            to[i].head<3>() = pixel.light / float(pixel.frames);
             to[i].w() = variance_of(pixel);
         });
     });

@@ -61,9 +61,11 @@ class RadianceMean {
     void begin_weights();
     /// A frame's surfaces in host memory.
     class FrameSurfaces;
+    class RowOfFrame;
     void add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces);
-    /// What of the frame is to be added beside it.
-    Vec4 add_to_pixel(NoisyPixel& pixel, size_t index, const Vec4& sample);
+    /// The same where nothing is noisy.
+    void add_beside(size_t tile, const PixelRect& area);
+    void add_row(size_t tile, const PixelRect& row, const native::BesideNoisy& of_row, bool has_beside);
     /// Standard errors of what is displayed, over the pixels of a tile that show a surface.
     struct TileError {
         float mean = 0, quadratic = 0;
@@ -86,7 +88,7 @@ class RadianceMean {
     SampledTiles tiles_;
     bool notes_surfaces_ = false;
     /// Sums of all frames: of pixels with noise, and beside them of what is not noisy.
-    TilePixels<NoisyPixel> noisy_;
+    TileValues<native::NoisyTile> noisy_;
     struct Sum {
         Vec4 radiance = Vec4::Zero();
     };

@@ -14,9 +14,9 @@ class HeldPixels {
     explicit HeldPixels(const Target& target) : area_(target.area()), pixels_(target.pixels<Pixel>()) {}
 
     Pixel* at(int x, int y) const {
-        if (x < area_.x || y < area_.y || x >= area_.x + area_.width || y >= area_.y + area_.height)
-            return nullptr;
-        return &pixels_[size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x)];
+        const auto column = unsigned(x - area_.x), row = unsigned(y - area_.y);
+        if (column >= unsigned(area_.width) || row >= unsigned(area_.height)) return nullptr;
+        return &pixels_[size_t(row) * size_t(area_.width) + column];
     }
 
   private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -48,10 +49,10 @@ class TileGrid {
     int columns_ = 0, rows_ = 0;
 };
 
-/// A value for each pixel, T() at first. Tiles take memory once one of theirs is written: together, so that
+/// Values of a picture's tiles, Values() at first. Tiles take memory once they are written: together, so that
 /// it goes back to the system when it is released.
-template <class T>
-class TilePixels {
+template <class Values>
+class TileValues {
   public:
     /// Forgets all values.
     void begin(Vec2i size) {
@@ -60,45 +61,59 @@ class TilePixels {
         tiles_.resize(grid_.count());
     }
     void release() {
-        std::vector<T*>().swap(tiles_);
+        std::vector<Values*>().swap(tiles_);
         blocks_.clear();
         free_ = 0;
         grid_ = TileGrid();
     }
     const TileGrid& grid() const { return grid_; }
 
-    /// The values of a tile's pixels, by TileGrid::place_of(); null where all are T().
-    T* of(size_t tile) const { return tiles_[tile]; }
+    /// Null where all are as at first.
+    Values* of(size_t tile) const { return tiles_[tile]; }
     /// The same to write to. Threads may do so with different tiles at a time.
-    T* make(size_t tile) {
-        if (!tiles_[tile]) tiles_[tile] = std::uninitialized_fill_n(take(), pixels, T()) - pixels;
-        return tiles_[tile];
-    }
-    T at(int x, int y) const {
-        const T* tile = of(grid_.tile_at(x, y));
-        return tile ? tile[TileGrid::place_of(x, y)] : T();
+    Values& make(size_t tile) {
+        if (!tiles_[tile]) tiles_[tile] = std::construct_at(take());
+        return *tiles_[tile];
     }
 
   private:
-    static constexpr size_t pixels = size_t(TileGrid::side) * TileGrid::side;
-    static constexpr size_t tiles_of_block = (size_t(1) << 20) / (pixels * sizeof(T));
-    static_assert(std::is_trivially_destructible_v<T>);
+    static constexpr size_t tiles_of_block = (size_t(1) << 20) / sizeof(Values);
+    static_assert(std::is_trivially_destructible_v<Values>);
 
     /// Room for a tile.
-    T* take() {
+    Values* take() {
         const std::lock_guard lock(mutex_);
         if (free_ == 0) {
-            blocks_.emplace_back(tiles_of_block * pixels * sizeof(T));
+            blocks_.emplace_back(tiles_of_block * sizeof(Values));
             free_ = tiles_of_block;
         }
-        return reinterpret_cast<T*>(blocks_.back().data()) + --free_ * pixels;
+        return reinterpret_cast<Values*>(blocks_.back().data()) + --free_;
     }
 
     TileGrid grid_;
-    std::vector<T*> tiles_;
+    std::vector<Values*> tiles_;
     std::mutex mutex_;
     std::vector<PooledVector<std::byte>> blocks_;
     size_t free_ = 0;  ///< tiles of the last block
+};
+
+/// A value for each pixel of a tile, by TileGrid::place_of().
+template <class T>
+struct PixelsOfTile {
+    T& operator[](size_t place) { return values[place]; }
+    const T& operator[](size_t place) const { return values[place]; }
+
+    std::array<T, size_t(TileGrid::side) * TileGrid::side> values{};
+};
+
+/// A value for each pixel, T() at first.
+template <class T>
+class TilePixels : public TileValues<PixelsOfTile<T>> {
+  public:
+    T at(int x, int y) const {
+        const auto* tile = this->of(this->grid().tile_at(x, y));
+        return tile ? (*tile)[TileGrid::place_of(x, y)] : T();
+    }
 };
 
 }  // namespace easypbr::render

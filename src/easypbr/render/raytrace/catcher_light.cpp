@@ -86,9 +86,14 @@ void CatcherLight::prepare(const RayScene& scene, const PathLights& lights, cons
     sky_light_ = ground && ground->shadow_catcher ? sky.light_on(ground->up.cast<float>()) : 0;
 }
 
-float CatcherLight::distance_of(const Vec3& place) const {
+std::vector<float> CatcherLight::distances(const PathVectors<3>& places) const {
     const RayScene::Ball& ball = scene_->ball();
-    return ball.radius > 0 ? (place - ball.centre).norm() / ball.radius : no_end;
+    std::vector<float> distances(places.room(), no_end);
+    if (!(ball.radius > 0)) return distances;
+    const float *x = places.component(0), *y = places.component(1), *z = places.component(2);
+    for (size_t i = 0; i < distances.size(); ++i)
+        distances[i] = (Vec3(x[i], y[i], z[i]) - ball.centre).norm() / ball.radius;
+    return distances;
 }
 
 void CatcherLight::add_hidden(const PathBatch& batch, const SkyPoint& point, const SkySampler::Sample& sky,
@@ -142,16 +147,18 @@ void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& l
         light[batch.state[paths[i]].index].arrives += lamps[paths[i]].all * luminance(left[i]);
 }
 
-void CatcherLight::add_samples(PathBatch& batch, std::vector<CaughtLight>& light) const {
+void CatcherLight::add_samples(PathBatch& batch, const std::vector<float>& distances,
+                               std::vector<CaughtLight>& light) const {
     if (batch.count == 0) return;
     batch.find_starts(scene_->reach());
     if (!lights_->empty()) add_lamps(batch, light);
     // Area lights count on directions that are distributed by the cosine.
-    if (!sky_->empty() || lights_->has_areas()) add_skies(batch, light);
+    if (!sky_->empty() || lights_->has_areas()) add_skies(batch, distances, light);
 }
 
-void CatcherLight::add_skies(const PathBatch& batch, std::vector<CaughtLight>& light) const {
-    const std::vector<SkyPoint> points = sky_points(batch);
+void CatcherLight::add_skies(const PathBatch& batch, const std::vector<float>& distances,
+                             std::vector<CaughtLight>& light) const {
+    const std::vector<SkyPoint> points = sky_points(batch, distances);
     const PathVectors<2> lobe = batch.points(0, lobe_point);
     const RayScene::Ball& ball = scene_->ball();
     Looks looks;
@@ -195,7 +202,8 @@ void CatcherLight::add_skies(const PathBatch& batch, std::vector<CaughtLight>& l
     looks.add_to(light, *scene_);
 }
 
-std::vector<CatcherLight::SkyPoint> CatcherLight::sky_points(const PathBatch& batch) const {
+std::vector<CatcherLight::SkyPoint> CatcherLight::sky_points(const PathBatch& batch,
+                                                             const std::vector<float>& distances) const {
     std::vector<SkyPoint> points(batch.count);
     std::vector<Vec2> chosen;
     const PathVectors<2> numbers = batch.points(0, sky_point);
@@ -203,7 +211,7 @@ std::vector<CatcherLight::SkyPoint> CatcherLight::sky_points(const PathBatch& ba
         SkyPoint& point = points[i];
         point.path = i;
         point.u = numbers.at(i);
-        point.sees_cone = !lights_->has_areas() && distance_of(batch.position.at(i)) > nearest_cone;
+        point.sees_cone = !lights_->has_areas() && distances[i] > nearest_cone;
         point.is_chosen = sky_->is_sampled();
         if (point.is_chosen && point.sees_cone) {
             point.is_chosen = point.u.x() < sky_part;

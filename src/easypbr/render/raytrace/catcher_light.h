@@ -24,18 +24,19 @@ class CatcherLight {
     /// Of the ground of the scene. All must outlive the calls of the others.
     void prepare(const RayScene& scene, const PathLights& lights, const SkySampler& sky);
 
-    /// One sample for each path of a batch, added by the paths' places.
-    void add_samples(PathBatch& batch, std::vector<CaughtLight>& light) const;
-
-    /// Of a place (RayScene's frame) from the middle of the ball that holds the casters, in its radii.
-    float distance_of(const Vec3& place) const;
+    /// Of places (RayScene's frame) from the middle of the ball that holds the casters, in its radii.
+    std::vector<float> distances(const PathVectors<3>& places) const;
+    /// One sample for each path of a batch, added by the paths' places, whose distances() these are.
+    void add_samples(PathBatch& batch, const std::vector<float>& distances,
+                     std::vector<CaughtLight>& light) const;
 
   private:
     struct Cone;
     struct SkyPoint;
     void add_lamps(const PathBatch& batch, std::vector<CaughtLight>& light) const;
-    std::vector<SkyPoint> sky_points(const PathBatch& batch) const;
-    void add_skies(const PathBatch& batch, std::vector<CaughtLight>& light) const;
+    std::vector<SkyPoint> sky_points(const PathBatch& batch, const std::vector<float>& distances) const;
+    void add_skies(const PathBatch& batch, const std::vector<float>& distances,
+                   std::vector<CaughtLight>& light) const;
     struct Looks;
     /// What a direction to the casters would bring, of a place outside of their ball.
     void add_hidden(const PathBatch& batch, const SkyPoint& point, const SkySampler::Sample& sky,

@@ -17,21 +17,21 @@ constexpr int radius = int(kernel.size()) / 2;
 // A pixel's light comes by way of cells beside it, and depends on the pixels beside those that they reach.
 static_assert(FireflyFilter::reach == 2 * (radius + 1) * FireflyFilter::cell);
 
-/// The two cells of a row or column that a pixel lies between.
-struct Between {
-    int first, second;
-    float part;  ///< of the second
+/// Rows of cells that are added up together.
+constexpr int band = 16;
 
-    Between(int pixel, int cells) {
-        constexpr int half = FireflyFilter::cell / 2;
-        const int from = (pixel + half) / FireflyFilter::cell - 1;
-        part = (float(pixel + half - (from + 1) * FireflyFilter::cell) + 0.5f) / FireflyFilter::cell;
-        first = std::max(from, 0);
-        second = std::min(from + 1, cells - 1);
-    }
-};
+bool is_any(const Vec3& light) {
+    return light.maxCoeff() > 0;
+}
 
 }  // namespace
+
+FireflyFilter::Between FireflyFilter::between(int pixel, int cells) {
+    constexpr int half = cell / 2;
+    const int from = (pixel + half) / cell - 1;
+    return {std::max(from, 0), std::min(from + 1, cells - 1),
+            (float(pixel + half - (from + 1) * cell) + 0.5f) / cell};
+}
 
 void FireflyFilter::begin_frame(const Vec2i& size, float most) {
     most_ = most;
@@ -39,6 +39,8 @@ void FireflyFilter::begin_frame(const Vec2i& size, float most) {
     cells_ = (size + Vec2i::Constant(cell - 1)) / cell;
     const auto count = size_t(cells_.x()) * size_t(cells_.y());
     taken_.assign(count, Vec3::Zero());
+    columns_.clear();
+    for (int x = 0; x < size.x(); ++x) columns_.push_back(between(x, cells_.x()));
     if (cells_found_.size() != count) cells_found_.assign(count, {});
 }
 
@@ -95,21 +97,27 @@ void FireflyFilter::blur(std::vector<Value>& values, const std::array<float, 5>&
 
 std::vector<Vec3> FireflyFilter::around(const Reflectance& reflectance) const {
     std::vector<Vec3> sums(taken_.size(), Vec3::Zero());
-    parallel_for(size_t(cells_.y()), 4, [&](size_t row) {
-        const int first = std::max(int(row) * cell - cell, 0),
-                  last = std::min(int(row) * cell + 2 * cell, size_.y());
-        Vec3* const to = sums.data() + cell_at(0, int(row));
+    parallel_for(size_t((cells_.y() + band - 1) / band), 1, [&](size_t number) {
+        const int begin = int(number) * band, end = std::min(begin + band, cells_.y());
+        std::vector<Vec3> row(size_t(size_.x())), of_cells(size_t(cells_.x()));
+        const int first = std::max((begin - 1) * cell, 0), last = std::min((end + 1) * cell, size_.y());
         for (int y = first; y < last; ++y) {
-            const Between rows(y, cells_.y());
-            const float part =
-                (rows.first == int(row) ? 1 - rows.part : 0) + (rows.second == int(row) ? rows.part : 0);
-            if (!(part > 0)) continue;
-            for (int x = 0; x < size_.x(); ++x) {
-                const Between columns(x, cells_.x());
-                const Vec3 of_pixel = part * reflectance(x, y);
-                to[columns.first] += (1 - columns.part) * of_pixel;
-                to[columns.second] += columns.part * of_pixel;
+            const Between rows = between(y, cells_.y());
+            if (rows.second < begin || rows.first >= end) continue;
+            reflectance(y, row);
+            std::ranges::fill(of_cells, Vec3::Zero());
+            for (size_t x = 0; x < row.size(); ++x) {
+                const auto& [left, right, part] = columns_[x];
+                of_cells[size_t(left)] += (1 - part) * row[x];
+                of_cells[size_t(right)] += part * row[x];
             }
+            const auto add = [&](int of_row, float part) {
+                if (of_row < begin || of_row >= end) return;
+                Vec3* const to = sums.data() + cell_at(0, of_row);
+                for (size_t i = 0; i < of_cells.size(); ++i) to[i] += part * of_cells[i];
+            };
+            add(rows.first, 1 - rows.part);
+            add(rows.second, rows.part);
         }
     });
     return sums;
@@ -137,7 +145,6 @@ void FireflyFilter::compare(const std::vector<Vec3>& own, const std::vector<Vec3
 }
 
 void FireflyFilter::spread(const Reflectance& reflectance, const Receive& receive) {
-    const auto is_any = [](const Vec3& light) { return light.maxCoeff() > 0; };
     if (std::ranges::none_of(taken_, is_any)) return;
     const std::vector<Vec3> own = around(reflectance);
     std::vector<Vec3> sums = own;
@@ -146,20 +153,22 @@ void FireflyFilter::spread(const Reflectance& reflectance, const Receive& receiv
     for (size_t i = 0; i < taken_.size(); ++i)
         if (is_any(taken_[i])) taken_[i] = taken_[i].cwiseQuotient(sums[i]);
     blur(taken_, kernel);
-    parallel_for(size_t(size_.y()), 16, [&](size_t row) {
-        const int y = int(row);
-        const Between rows(y, cells_.y());
-        for (int x = 0; x < size_.x(); ++x) {
-            const Between columns(x, cells_.x());
-            const auto along = [&](int of_row) {
-                return Vec3((1 - columns.part) * taken_[cell_at(columns.first, of_row)] +
-                            columns.part * taken_[cell_at(columns.second, of_row)]);
-            };
-            const Vec3 light = (1 - rows.part) * along(rows.first) + rows.part * along(rows.second);
-            if (!is_any(light)) continue;
-            if (const Vec3 of_pixel = reflectance(x, y); is_any(of_pixel))
-                receive(x, y, of_pixel.cwiseProduct(light));
+    parallel_for(size_t(size_.y()), 16, [&](size_t of_row) {
+        const int y = int(of_row);
+        const auto [above, below, part] = between(y, cells_.y());
+        const Vec3 *upper = taken_.data() + cell_at(0, above), *lower = taken_.data() + cell_at(0, below);
+        std::vector<Vec3> of_cells(size_t(cells_.x()));
+        for (size_t i = 0; i < of_cells.size(); ++i) of_cells[i] = (1 - part) * upper[i] + part * lower[i];
+        if (std::ranges::none_of(of_cells, is_any)) return;
+        std::vector<Vec3> row(size_t(size_.x()));
+        reflectance(y, row);
+        for (size_t x = 0; x < row.size(); ++x) {
+            const auto& [left, right, of_right] = columns_[x];
+            const Vec3 light =
+                (1 - of_right) * of_cells[size_t(left)] + of_right * of_cells[size_t(right)];
+            row[x] = row[x].cwiseProduct(light);
         }
+        receive(y, row);
     });
 }
 

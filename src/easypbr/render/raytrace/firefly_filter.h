@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "easypbr/core/math.h"
@@ -35,11 +36,12 @@ class FireflyFilter {
     /// whole cells.
     void take(const PixelRect& block, PathRadiance& radiance);
 
-    /// Which part of light a pixel scatters, 0 where it must not get any; not 0 where any was taken.
-    using Reflectance = std::function<Vec3(int x, int y)>;
-    using Receive = std::function<void(int x, int y, const Vec3& light)>;
-    /// Calls `receive` with what pixels get: in proportion to their reflectance, less with the distance, and
-    /// all together what was taken. Both are called from several threads.
+    /// Writes which part of light the pixels of a row scatter, 0 where they must not get any; not 0 where any
+    /// was taken.
+    using Reflectance = std::function<void(int y, std::span<Vec3> row)>;
+    using Receive = std::function<void(int y, std::span<const Vec3> light)>;
+    /// Calls `receive` with what the pixels of rows get: in proportion to their reflectance, less with the
+    /// distance, and all together what was taken. Both are called from several threads.
     void spread(const Reflectance& reflectance, const Receive& receive);
 
   private:
@@ -54,6 +56,12 @@ class FireflyFilter {
     /// The part of a path's light that stays at its pixel.
     static float staying(const Found& found, float bright);
 
+    /// The two cells of a row or column that a pixel lies between.
+    struct Between {
+        int first, second;
+        float part;  ///< of the second
+    };
+    static Between between(int pixel, int cells);
     /// The reflectance of the pixels around the middle of each cell, by their distance.
     std::vector<Vec3> around(const Reflectance& reflectance) const;
     /// Spreads values over the cells around.
@@ -62,6 +70,7 @@ class FireflyFilter {
     void compare(const std::vector<Vec3>& own, const std::vector<Vec3>& reached);
 
     Vec2i size_{0, 0}, cells_{0, 0};
+    std::vector<Between> columns_;  ///< of the pixels of a row
     float most_ = 0;
     std::vector<Vec3> taken_;  ///< for each cell
     std::vector<Found> cells_found_;

@@ -31,6 +31,25 @@ struct Found {
     std::vector<float> sum, number;
 };
 
+/// Of blocks one is chosen as lights are within a block.
+void add_block(uint32_t first, Found& found, size_t i, ChosenLight& so_far) {
+    const float sum = found.sum[i];
+    if (so_far.all == 0) {
+        so_far = {found.light.at(i), sum, first + uint32_t(found.number[i]), found.way.at(i)};
+        return;
+    }
+    const float all = so_far.all + sum, part = sum / all;
+    const bool taken = found.choice[i] < part;
+    const float left = taken ? found.choice[i] / part : (found.choice[i] - part) / (1 - part);
+    so_far.light = taken ? Vec3(found.light.at(i) * (all / sum)) : Vec3(so_far.light * (all / so_far.all));
+    if (taken) {
+        so_far.index = first + uint32_t(found.number[i]);
+        so_far.way = found.way.at(i);
+    }
+    so_far.all = all;
+    found.choice[i] = std::min(left, below_one);
+}
+
 template <class Stream>
 Stream stream_of(const PathBatch& batch, Found& found) {
     Stream stream;
@@ -113,21 +132,7 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
             native::run((caught ? block.of_catcher : block.uniforms).get(),
                         stream_of<native::path_lamps_stream>(batch, found), count);
         for (size_t i = 0; i < batch.count; ++i) {
-            ChosenLight& so_far = chosen[i];
-            const float sum = found.sum[i];
-            if (!(sum > 0)) continue;
-            const float all = so_far.all + sum, part = sum / all;
-            // Of the blocks one is chosen as lights are within a block.
-            const bool taken = found.choice[i] < part;
-            const float left = taken ? found.choice[i] / part : (found.choice[i] - part) / (1 - part);
-            so_far.light =
-                taken ? Vec3(found.light.at(i) * (all / sum)) : Vec3(so_far.light * (all / so_far.all));
-            if (taken) {
-                so_far.index = block.first + uint32_t(found.number[i]);
-                so_far.way = found.way.at(i);
-            }
-            so_far.all = all;
-            found.choice[i] = std::min(left, below_one);
+            if (found.sum[i] > 0) add_block(block.first, found, i, chosen[i]);
         }
     }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "easypbr/core/parallel.h"
@@ -48,6 +49,10 @@ float most_spread(const Frame& frame) {
 }  // namespace
 
 float PathPass::Caught::add(const CaughtLight& light) {
+    if (light.all == 0 && light.arrives == 0) {
+        ++frames;
+        return float(ratio());
+    }
     const double before = frames * ratio();
     sum.arrives += light.arrives;
     sum.all += light.all;
@@ -188,28 +193,52 @@ struct PathPass::Block {
     std::array<uint32_t, room> index;  ///< of the pixel in the block
 };
 
-PathPass::Caught& PathPass::caught_at(int x, int y) {
-    return caught_.make(caught_.grid().tile_at(x, y))[TileGrid::place_of(x, y)];
+/// What shadow catchers have caught in a tile, found once it is asked for.
+class PathPass::CaughtTile {
+  public:
+    CaughtTile(PathPass& pass, int x, int y) : pass_(pass), x_(x), y_(y) {}
+
+    Caught& at(int x, int y) {
+        TilePixels<Caught>& all = pass_.caught_;
+        if (!values_) values_ = &all.make(all.grid().tile_at(x_, y_));
+        return (*values_)[TileGrid::place_of(x, y)];
+    }
+
+  private:
+    PathPass& pass_;
+    int x_, y_;  ///< one of its pixels
+    PixelsOfTile<Caught>* values_ = nullptr;
+};
+
+template <class Visit>
+void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Visit&& visit) {
+    const int right = block.x + block.width, bottom = block.y + block.height;
+    const SampledTiles* const tiles = pixels.starts.tiles;
+    for (int left = block.x; left < right; left += SampledTiles::side) {
+        if (tiles && tiles->has_ended(tiles->tile_at(left, block.y))) continue;
+        CaughtTile caught(*this, left, block.y);
+        for (int y = block.y; y < bottom; ++y)
+            for (int x = left; x < std::min(left + SampledTiles::side, right); ++x) {
+                const float* depth = pixels.depth.at(x, y);
+                if (!depth || !(*depth > 0)) continue;
+                const auto index = uint32_t((y - block.y) * block.width + x - block.x);
+                visit(x, y, index, (*pixels.material.at(x, y))[3], caught);
+            }
+    }
 }
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
     Block lit, caught, extended;
-    const auto each = [&](auto&& visit) {
-        for (int y = block.y; y < block.y + block.height; ++y)
-            for (int x = block.x; x < block.x + block.width; ++x)
-                if (pixels.is_traced(x, y))
-                    visit(x, y, uint32_t((y - block.y) * block.width + x - block.x),
-                          (*pixels.material.at(x, y))[3]);
-    };
-    each([&](int x, int y, uint32_t index, uint8_t kind) {
+    const auto sort = [&](int x, int y, uint32_t index, uint8_t kind, CaughtTile& of_tile) {
         if (kind == uint8_t(SurfaceKind::extended))
             extended.add(pixels, x, y, index);
         else if (is_lit_by_scene(kind))
             lit.add(pixels, x, y, index);
-        else if (is_catcher(kind) && pixels.starts.caught && caught_at(x, y).is_due(pixels.turn_of(x, y)))
+        else if (is_catcher(kind) && pixels.starts.caught && of_tile.at(x, y).is_due(pixels.turn_of(x, y)))
             caught.add(pixels, x, y, index);
-    });
+    };
+    each_traced(pixels, block, sort);
     std::vector<bool> is_hit(count, false);
     std::vector<PathTracer::Hit> hits = hits_of(pixels, extended, is_hit, lit);
     PathRadiance radiance(count);
@@ -221,15 +250,19 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     tracer_.trace(batch, hits, radiance);
     const std::vector<CaughtLight> light = light_of(pixels, caught, count);
     fireflies_.take(block, radiance);
-    each([&](int x, int y, uint32_t index, uint8_t kind) {
+    for (int y = block.y; y < block.y + block.height; ++y)
+        if (Vec4* row = pixels.radiance.at(block.x, y)) std::fill_n(row, block.width, Vec4::Zero());
+    const auto write = [&](int x, int y, uint32_t index, uint8_t kind, CaughtTile& of_tile) {
         Vec4* to = pixels.radiance.at(x, y);
         if (!to) return;
         const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
-        to->head<3>() = radiance.within[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
+        to->head<3>() = radiance.within[index];
+        if (emission) to->head<3>() += emission->head<3>();
         to->w() = 1;
         if (pixels.starts.caught && is_catcher(kind))
-            *pixels.caught.at(x, y) = caught_at(x, y).add(light[index]);
-    });
+            *pixels.caught.at(x, y) = of_tile.at(x, y).add(light[index]);
+    };
+    each_traced(pixels, block, write);
 }
 
 std::vector<PathTracer::Hit> PathPass::hits_of(const Pixels& pixels, Block& extended,
@@ -261,27 +294,33 @@ std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, Block& caught,
     RayScene::Places places(caught.count);
     PathBatch batch(caught.count);
     caught.find(pixels, places, batch);
+    const std::vector<float> distances = tracer_.catcher().distances(places.position);
     for (size_t i = 0; i < caught.count; ++i)
-        caught_at(caught.x[i], caught.y[i]).period =
-            catcher_period(tracer_.catcher().distance_of(places.position.at(i)));
+        CaughtTile(*this, caught.x[i], caught.y[i]).at(caught.x[i], caught.y[i]).period =
+            catcher_period(distances[i]);
     places.face = places.normal;
     caught.start(pixels, places, batch);
-    tracer_.catcher().add_samples(batch, light);
+    tracer_.catcher().add_samples(batch, distances, light);
     return light;
 }
 
 void PathPass::spread_fireflies(const Pixels& pixels) {
-    const auto reflectance = [&](int x, int y) {
-        if (!pixels.is_traced(x, y)) return Vec3(Vec3::Zero());
-        const auto [metallic, roughness, unused, kind] = *pixels.material.at(x, y);
-        if (!is_lit_by_scene(kind) || is_catcher(kind)) return Vec3(Vec3::Zero());
-        // Smooth metals scatter little of it widely.
-        const float part = 1 - float(metallic) / 255 * (1 - float(roughness) / 255);
-        const std::array<uint16_t, 4>& color = *pixels.albedo.at(x, y);
-        return Vec3((Vec3(color[0], color[1], color[2]) * (part / 65535)).cwiseMax(black_reflectance));
+    const auto reflectance = [&](int y, std::span<Vec3> row) {
+        for (int x = 0; x < int(row.size()); ++x) {
+            Vec3& to = row[size_t(x)];
+            to.setZero();
+            if (!pixels.is_traced(x, y)) continue;
+            const auto [metallic, roughness, unused, kind] = *pixels.material.at(x, y);
+            if (!is_lit_by_scene(kind)) continue;
+            // Smooth metals scatter little of it widely.
+            const float part = 1 - float(metallic) / 255 * (1 - float(roughness) / 255);
+            const std::array<uint16_t, 4>& color = *pixels.albedo.at(x, y);
+            to = (Vec3(color[0], color[1], color[2]) * (part / 65535)).cwiseMax(black_reflectance);
+        }
     };
-    fireflies_.spread(reflectance, [&](int x, int y, const Vec3& light) {
-        if (Vec4* to = pixels.radiance.at(x, y)) to->head<3>() += light;
+    fireflies_.spread(reflectance, [&](int y, std::span<const Vec3> light) {
+        for (int x = 0; x < int(light.size()); ++x)
+            if (Vec4* to = pixels.radiance.at(x, y)) to->head<3>() += light[size_t(x)];
     });
 }
 
@@ -312,7 +351,9 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     const Target& emission = targets.emission.is_ahead() ? targets.emission : nothing;
     targets.radiance.write(frame.whole());
     const auto radiance = targets.radiance.pixels<Vec4>();
-    parallel_for(radiance.size(), 1 << 14, [&](size_t i) { radiance[i] = Vec4::Zero(); });
+    // Blocks write all their pixels.
+    if (frame.covered.width < frame.size.x() || frame.covered.height < frame.size.y())
+        parallel_for(radiance.size(), 1 << 14, [&](size_t i) { radiance[i] = Vec4::Zero(); });
     const Pixels pixels(frame, targets, emission, scene, starts);
     const PixelRect& area = frame.covered;
     // Blocks hold whole tiles, and whole cells.

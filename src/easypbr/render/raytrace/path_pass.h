@@ -67,7 +67,11 @@ class PathPass {
         uint32_t period : 4 = 0;  ///< gets a sample every so many frames; 0: not known yet
     };
     static_assert(sizeof(Caught) == 12, "there is one for each pixel of a ground");
-    Caught& caught_at(int x, int y);
+    class CaughtTile;
+    /// Calls visit(x, y, index, kind, caught) for the pixels of a block of whole tiles that paths start from,
+    /// tile by tile: index in the block, the surface's code, CaughtTile&.
+    template <class Visit>
+    void each_traced(const Pixels& pixels, const PixelRect& block, Visit&& visit);
 
     TilePixels<Caught> caught_;
 };

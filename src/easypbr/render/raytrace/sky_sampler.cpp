@@ -27,6 +27,11 @@ void SkySampler::prepare(const Environment& environment, const Mat3& R_env_world
     hash_ = hash;
 }
 
+Vec2 SkySampler::place_of(const Vec3& direction) const {
+    const Mat3& R = R_env_world_;
+    return sky_place(R.col(0) * direction.x() + R.col(1) * direction.y() + R.col(2) * direction.z());
+}
+
 const float* SkySampler::texel_at(const Vec2& place) const {
     const Image& image = environment_.image();
     const Vec2i at = pixel_at(place, {image.width(), image.height()});
@@ -42,7 +47,7 @@ SkySampler::Sample SkySampler::seen_at(const Vec2& place, const Vec3& direction,
 
 SkySampler::Sample SkySampler::seen(const Vec3& direction, float density) const {
     if (empty()) return {direction, Vec3::Zero(), 0};
-    return seen_at(sky_place(R_env_world_ * direction), direction, density);
+    return seen_at(place_of(direction), direction, density);
 }
 
 std::vector<SkySampler::Sample> SkySampler::seen(std::span<const Vec3> directions,
@@ -51,7 +56,7 @@ std::vector<SkySampler::Sample> SkySampler::seen(std::span<const Vec3> direction
     if (empty()) return samples;
     std::vector<Vec2> places(directions.size());
     for (size_t i = 0; i < places.size(); ++i) {
-        places[i] = sky_place(R_env_world_ * directions[i]);
+        places[i] = place_of(directions[i]);
         __builtin_prefetch(&bright_.texel(places[i]));
         if (densities[i] >= most_blurred) __builtin_prefetch(texel_at(places[i]));
     }
@@ -70,7 +75,7 @@ std::vector<SkySampler::Sample> SkySampler::sample(std::span<const Vec2> points)
     std::vector<Sample> samples;
     samples.reserve(points.size());
     for (const BrightSky::Sample& at : places)
-        samples.push_back({R_world_env * at.direction(), intensity_ * at.radiance, at.density});
+        samples.push_back({R_world_env.lazyProduct(at.direction()), intensity_ * at.radiance, at.density});
     return samples;
 }
 
