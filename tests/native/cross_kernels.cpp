@@ -337,6 +337,7 @@ int main() {
     check_splats(kernels);
     check_clusters(kernels);
     check_pixels(kernels);
+    check_map_directions(kernels);
     check_noisy_rows(kernels);
     check_paths(kernels);
     check_emitters(kernels);

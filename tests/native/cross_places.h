@@ -161,6 +161,23 @@ inline void check_pixels(const Kernels& kernels) {
     });
 }
 
+inline void check_map_directions(const Kernels& kernels) {
+    constexpr int count = 203, room = count + stream_alignment;
+    all_sets("map_directions", [&](Case& run) {
+        float rotation[3][3];
+        for (auto& column : rotation)
+            for (float& value : column) value = run.random.between(-1, 1);
+        const float* directions[3];
+        for (const float*& values : directions) values = run.floats(room, -1, 1);
+        float* numbers[5];
+        for (float*& values : numbers) values = run.output<float>(room, Kind::floats);
+        kernels.find_map_places(rotation, directions, count, numbers[0], numbers[1]);
+        kernels.find_map_directions(rotation, numbers[0], directions[0], directions[1], count,
+                                    {numbers[2], numbers[3], numbers[4]});
+        for (float* values : numbers) std::fill(values + count, values + room, 0.0f);
+    });
+}
+
 inline void check_noisy_rows(const Kernels& kernels) {
     constexpr int pixels = NoisyRow::pixels;
     all_sets("add_noisy_row", [&](Case& run) {

@@ -302,6 +302,14 @@ struct CameraPlaces {
 using FindPlaces = void (*)(const CameraRays& rays, const PixelSurfaces& pixels, int count,
                             const CameraPlaces& places);
 
+/// Places in an equirectangular map, 0 to 1 each, of unit directions that `rotation` ([column][row]) turns
+/// into the map's. Arrays of a multiple of stream_alignment.
+using FindMapPlaces = void (*)(const float (&rotation)[3][3], const float* const (&directions)[3], int count,
+                               float* u, float* v);
+/// The inverse, turned by `rotation`: of u, and of the cosine and sine of the angle from straight up.
+using FindMapDirections = void (*)(const float (&rotation)[3][3], const float* u, const float* cosines,
+                                   const float* sines, int count, float* const (&directions)[3]);
+
 /// Noisy light of a square of a picture, with an array for each number, row by row: sums and means over the
 /// frames in which a pixel has some. Steps of 1 / 65535 are finer than denoisers tell apart.
 struct NoisyTile {
@@ -402,6 +410,8 @@ struct Kernels {
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
     AddNoisyRow add_noisy_row;
+    FindMapPlaces find_map_places;
+    FindMapDirections find_map_directions;
     FindPlaces find_places;
     SamplePaths sample_paths;
     SampleEmitters sample_emitters;

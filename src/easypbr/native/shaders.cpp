@@ -272,6 +272,16 @@ int set_up_points(const PointBatch& points, PointScreen& screen) {
     return chosen_set().kernels->set_up_points(points, screen);
 }
 
+void find_map_places(const float (&rotation)[3][3], const float* const (&directions)[3], int count, float* u,
+                     float* v) {
+    chosen_set().kernels->find_map_places(rotation, directions, count, u, v);
+}
+
+void find_map_directions(const float (&rotation)[3][3], const float* u, const float* cosines,
+                         const float* sines, int count, float* const (&directions)[3]) {
+    chosen_set().kernels->find_map_directions(rotation, u, cosines, sines, count, directions);
+}
+
 bool add_noisy_row(const NoisyRow& row, int y, NoisyTile& tile, BesideNoisy& beside) {
     return chosen_set().kernels->add_noisy_row(row, y, tile, beside);
 }

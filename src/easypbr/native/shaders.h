@@ -86,6 +86,13 @@ int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 /// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.
 int set_up_points(const PointBatch& points, PointScreen& screen);
 
+/// Places in equirectangular maps and directions, as FindMapPlaces and FindMapDirections. On the calling
+/// thread.
+void find_map_places(const float (&rotation)[3][3], const float* const (&directions)[3], int count, float* u,
+                     float* v);
+void find_map_directions(const float (&rotation)[3][3], const float* u, const float* cosines,
+                         const float* sines, int count, float* const (&directions)[3]);
+
 /// Adds a frame's pixels to those of a tile, as AddNoisyRow. On the calling thread.
 bool add_noisy_row(const NoisyRow& row, int y, NoisyTile& tile, BesideNoisy& beside);
 

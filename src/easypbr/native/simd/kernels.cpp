@@ -33,6 +33,7 @@ struct Fragment : TextureReader {
 #include "easypbr/native/simd/blend_splats.h"
 #include "easypbr/native/simd/camera_places.h"
 #include "easypbr/native/simd/cluster_setup.h"
+#include "easypbr/native/simd/map_directions.h"
 #include "easypbr/native/simd/noisy_rows.h"
 #include "easypbr/native/simd/point_setup.h"
 #include "easypbr/native/simd/sample_emitters.h"
@@ -332,6 +333,8 @@ const Kernels kernels{resolve_triangles,
                       set_up_cluster,
                       set_up_points,
                       add_noisy_row,
+                      find_map_places,
+                      find_map_directions,
                       find_places,
                       sample_paths,
                       sample_emitters,

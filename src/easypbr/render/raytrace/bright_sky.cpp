@@ -128,9 +128,12 @@ void BrightSky::sample(std::span<const Vec2> points, std::span<Sample> samples) 
     }
 }
 
+float BrightSky::Sample::sin_theta() const {
+    return float(std::sqrt(std::max(0.0, (1 - cos_theta) * (1 + cos_theta))));
+}
+
 Vec3 BrightSky::Sample::direction() const {
-    const float phi = float(2 * pi) * (u - 0.5f);
-    const auto sine = float(std::sqrt(std::max(0.0, (1 - cos_theta) * (1 + cos_theta))));
+    const float phi = float(2 * pi) * (u - 0.5f), sine = sin_theta();
     return {sine * std::sin(phi), float(cos_theta), -sine * std::cos(phi)};
 }
 

@@ -31,6 +31,7 @@ class BrightSky {
         Vec3 radiance{0, 0, 0};
         float density = 0;  ///< per steradian
 
+        float sin_theta() const;
         /// Unit direction of the map.
         Vec3 direction() const;
     };

@@ -40,8 +40,6 @@ class SkySampler {
     std::vector<Sample> seen(std::span<const Vec3> directions, std::span<const float> densities) const;
 
   private:
-    /// In the map, 0 to 1 each.
-    Vec2 place_of(const Vec3& direction) const;
     const float* texel_at(const Vec2& place) const;
     Sample seen_at(const Vec2& place, const Vec3& direction, float density) const;
 
