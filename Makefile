@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench bench-light wheel test-wheel test-carried deb release-check check-long check-notebook sanitize sanitize-address sanitize-thread fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench bench-light bench-light-peers wheel test-wheel test-carried deb release-check check-long check-notebook sanitize sanitize-address sanitize-thread fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -38,6 +38,12 @@ bench: build
 bench-light: setup-tests library
 	@scripts/oracle.sh
 	.venv-oracle/bin/python bench/light.py
+
+# FLIP of pictures of EasyPBR, VTK, F3D and Open3D from Mitsuba 3's. Needs EASYPBR_TEST_DATA.
+bench-light-peers: setup-tests library
+	@scripts/oracle.sh
+	@scripts/peers.sh
+	.venv-oracle/bin/python bench/light_peers.py
 
 # Wheels in dist/, for Python 3.10, 3.11, and 3.12 and later.
 wheel: setup

@@ -1,4 +1,4 @@
-"""The half of bench/light.py that EasyPBR draws. usage: light_easypbr.py --setups FOLDER DATA [SCENE...] | FOLDER"""
+"""The half of bench/light.py that EasyPBR draws. usage: light_easypbr.py --setups FOLDER DATA [SCENE...] | FOLDER | --default FOLDER"""
 import pathlib
 import sys
 import time
@@ -33,10 +33,9 @@ def view_of(setup):
             mesh.material.ior = 1.5
         mesh.style.flat = True  # as Mitsuba draws what has no normals
         scene.show(mesh, f"shape{i}")
-    matt = all(shape.kind == light_scenes.DIFFUSE for shape in setup.shapes)
     view = Viewer(light_scenes.SIZE, {
         "camera": {"position": setup.position, "target": setup.target, "fov_y_deg": setup.fov_y_deg},
-        "shading": {"dielectric_f0": 0.0 if matt else 0.04, "multiple_scattering": False}, "background": {"mode": "transparent"},
+        "shading": {"dielectric_f0": 0.0 if setup.matt else 0.04, "multiple_scattering": False}, "background": {"mode": "transparent"},
         "environment": {"enabled": setup.sky is not None, "sun": False}, "path": {"enabled": True, "bounces": 8}}, scene)
     if setup.sky is not None:
         view.load_environment_map(setup.sky)
@@ -65,9 +64,19 @@ def draw(setup):
     return pictures
 
 
+def draw_default(setup):
+    """Of 8 samples, denoised."""
+    view = view_of(setup)
+    view.settings.path.denoise = "filter"
+    return {"default": view.render(samples=8, hdr=True)[:, :, :3] * setup.exposure}
+
+
 def main():
     if sys.argv[1] == "--setups":
         write_setups(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:])
+        return
+    if sys.argv[1] == "--default":
+        light_scenes.draw_each(pathlib.Path(sys.argv[2]), "default", draw_default)
         return
     folder = pathlib.Path(sys.argv[1])
     for name, setup in light_scenes.read_all(folder).items():

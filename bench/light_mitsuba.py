@@ -1,4 +1,8 @@
-"""The half of bench/light.py that Mitsuba 3 draws, in the environment of scripts/oracle.sh. usage: light_mitsuba.py FOLDER"""
+"""The half of bench/light.py that Mitsuba 3 draws, in the environment of scripts/oracle.sh.
+
+usage: light_mitsuba.py FOLDER | --references FOLDER
+The references of bench/light_peers.py are two means of half the samples each; those that FOLDER has are kept.
+"""
 import os
 import pathlib
 import sys
@@ -7,10 +11,12 @@ import time
 import mitsuba as mi
 import numpy as np
 
+import light
 import light_scenes
 
 SAMPLES = (1, 2, 4, 8, 16, 36, 64, 144, 256)  # as multijitter takes them
 REFERENCE_SAMPLES = 256  # of a pass
+BETWEEN_HALVES = 0.015  # FLIP; that of noise in their mean is below 0.01
 
 
 def bsdf(shape):
@@ -67,17 +73,43 @@ def render(scene, samples, seed):
     return picture, time.process_time() - start
 
 
+def passes(scene, samples, first=0):
+    return [render(scene, REFERENCE_SAMPLES, 100 + first + i)[0] for i in range(samples // REFERENCE_SAMPLES)]
+
+
+def reference(scene, setup):
+    """Two means of as many samples each, which are so many that hardly anything is between them."""
+    sums, count = np.zeros((2, *reversed(light_scenes.SIZE), 4)), 0
+    while True:
+        for picture in passes(scene, setup.limit_samples, count):
+            sums[count % 2] += picture
+            count += 1
+        means = 2 * sums / count
+        if light.flip(*(light_scenes.displayed(mean, setup.exposure) for mean in means)) <= BETWEEN_HALVES:
+            return means
+
+
+def write_references(folder):
+    for name, setup in light_scenes.read_all(folder).items():
+        path = folder / f"reference {name}.npy"
+        if not path.exists():
+            np.save(path, reference(scene_of(setup), setup))
+        print(f"... reference: {name}", file=sys.stderr, flush=True)
+
+
 def main():
-    folder = pathlib.Path(sys.argv[1])
     variant = os.environ["MITSUBA_VARIANT"]
     mi.set_variant(variant)
+    if sys.argv[1] == "--references":
+        write_references(pathlib.Path(sys.argv[2]))
+        return
+    folder = pathlib.Path(sys.argv[1])
     for name, setup in light_scenes.read_all(folder).items():
         scene = scene_of(setup)
         render(scene, 1, 0)  # compiles kernels
         drawn = {(samples, "off"): render(scene, samples, 1) for samples in SAMPLES}
         if variant.startswith("llvm"):
-            parts = [render(scene, REFERENCE_SAMPLES, 100 + i)[0] for i in range(setup.limit_samples // REFERENCE_SAMPLES)]
-            drawn[0, "off"] = np.mean(parts, axis=0), 0
+            drawn[0, "off"] = np.mean(passes(scene, setup.limit_samples), axis=0), 0
         np.save(folder / f"{variant} {name}.npy", drawn)
         print(f"... {variant}: {name}", file=sys.stderr, flush=True)
 

@@ -1,10 +1,15 @@
-"""The scenes of bench/light.py as numbers that both renderers build them from, and how pictures are compared."""
+"""The scenes of bench/light.py as numbers that all renderers build them from, and how pictures are compared."""
 import dataclasses
 import pathlib
+import sys
 
 import numpy as np
 
 SIZE = (256, 192)
+#: Radiance from everywhere, in place of reflected light, that rasterisers may get where there is no sky.
+AMBIENT = (0.0, 0.05, 0.1)
+#: Of glass, where rasterisers blend it.
+OPACITIES = (0.2, 0.4, 0.6, 0.8)
 #: Materials: a diffuse surface; a conductor of a roughness; a dielectric of index 1.5 over a diffuse base; one that transmits.
 DIFFUSE, CONDUCTOR, PLASTIC, GLASS = "diffuse", "conductor", "plastic", "glass"
 
@@ -33,6 +38,19 @@ class Setup:
     @property
     def shows_emitters(self):
         return any(shape.emission for shape in self.shapes)
+
+    @property
+    def half_height(self):
+        """Of what is seen at the target."""
+        return np.linalg.norm(np.subtract(self.position, self.target)) * np.tan(np.radians(self.fov_y_deg) / 2)
+
+    @property
+    def matt(self):
+        return all(shape.kind == DIFFUSE for shape in self.shapes)
+
+    @property
+    def has_glass(self):
+        return any(shape.kind == GLASS for shape in self.shapes)
 
 
 def box(size, centre=(0.0, 0.0, 0.0)):
@@ -122,9 +140,51 @@ def figures(V, F, sky, studio):
     }
 
 
+def flat(shape):
+    """Corners and normals, three of each a face, for what draws no flat faces of its own accord."""
+    corners = shape.V[shape.F].astype(np.float32)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-20)
+    return corners.reshape(-1, 3), np.repeat(normals, 3, axis=0)
+
+
+def spots(setup, rows=2):
+    """What stands for emissive boxes where only points send light: (position, direction, intensity), diffuse, of their undersides."""
+    found = []
+    for shape in setup.shapes:
+        if shape.emission:
+            low, high = shape.V.min(0), shape.V.max(0)
+            intensity = shape.emission * (high - low)[0] * (high - low)[2] / rows ** 2
+            steps = (np.arange(rows) + 0.5) / rows
+            found += [(np.array([low[0] + x * (high - low)[0], low[1] - 1e-3, low[2] + z * (high - low)[2]]),
+                       np.array([0.0, -1.0, 0.0]), intensity) for x in steps for z in steps]
+    return found
+
+
+def averaged(linear, factor):
+    """Of factor x factor pixels each."""
+    height, width, channels = linear.shape
+    return linear.reshape(height // factor, factor, width // factor, factor, channels).mean((1, 3)).astype(np.float32)
+
+
 def read_all(folder: pathlib.Path):
     """What bench/light.py has saved."""
     return np.load(folder / "setups.npy", allow_pickle=True).item()
+
+
+def ambient_of(setup):
+    return AMBIENT if setup.sky is None else AMBIENT[:1]
+
+
+def opacities_of(setup):
+    return OPACITIES if setup.has_glass else OPACITIES[:1]
+
+
+def draw_each(folder: pathlib.Path, renderer, draw):
+    """Saves what `draw` makes of each setup: pictures by what they were drawn with."""
+    for name, setup in read_all(folder).items():
+        np.save(folder / f"{renderer} {name}.npy", draw(setup))
+        print(f"... {renderer}: {name}", file=sys.stderr, flush=True)
 
 
 def displayed(radiance, exposure):

@@ -3,10 +3,5 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 : "${EASYPBR_TEST_DATA:?set it to a folder with nefertiti.obj, env/studio.hdr and DamagedHelmet}"
-peers=("vtk==9.7.*" "threepp==2026.10.*" "open3d==0.20.*" trimesh numpy)
-if ! .venv-bench/bin/python -c "import vtk, threepp, open3d, trimesh" 2>/dev/null; then
-  echo "installing into .venv-bench: ${peers[*]}"
-  python3 -m venv .venv-bench
-  .venv-bench/bin/pip install --quiet "${peers[@]}"
-fi
+scripts/peers.sh
 exec python3 bench/run.py --data "$EASYPBR_TEST_DATA" "$@"
