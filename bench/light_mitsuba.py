@@ -19,8 +19,10 @@ REFERENCE_SAMPLES = 256  # of a pass
 BETWEEN_HALVES = 0.015  # FLIP; that of noise in their mean is below 0.01
 
 
-def bsdf(shape):
+def bsdf(shape, fresnel):
     color = {"type": "rgb", "value": [float(c) for c in shape.color]}
+    if shape.kind == light_scenes.CONDUCTOR and fresnel:
+        return {"type": "principled", "base_color": color, "roughness": shape.roughness, "metallic": 1.0}
     if shape.kind == light_scenes.CONDUCTOR:
         return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": shape.roughness ** 2,
                 "specular_reflectance": color}
@@ -32,9 +34,9 @@ def bsdf(shape):
     return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
 
 
-def mesh(shape):
+def mesh(shape, fresnel):
     properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict(bsdf(shape))
+    properties["bsdf"] = mi.load_dict(bsdf(shape, fresnel))
     if shape.emission:
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": shape.emission}})
     made = mi.Mesh("shape", len(shape.V), len(shape.F), props=properties)
@@ -45,7 +47,8 @@ def mesh(shape):
     return made
 
 
-def scene_of(setup):
+def scene_of(setup, fresnel=False):
+    """Metals are white at grazing angles with `fresnel`, as those of glTF and of rasterisers are; without, they cost less."""
     transform = mi.ScalarTransform4f()
     scene = {
         "type": "scene", "integrator": {"type": "path", "max_depth": 9, "hide_emitters": not setup.shows_emitters},
@@ -62,7 +65,7 @@ def scene_of(setup):
     for i, (position, intensity) in enumerate(setup.lamps):
         scene[f"lamp{i}"] = {"type": "point", "position": list(position), "intensity": {"type": "rgb", "value": intensity}}
     for i, shape in enumerate(setup.shapes):
-        scene[f"shape{i}"] = mesh(shape)
+        scene[f"shape{i}"] = mesh(shape, fresnel)
     return mi.load_dict(scene)
 
 
@@ -93,7 +96,7 @@ def write_references(folder):
     for name, setup in light_scenes.read_all(folder).items():
         path = folder / f"reference {name}.npy"
         if not path.exists():
-            np.save(path, reference(scene_of(setup), setup))
+            np.save(path, reference(scene_of(setup, fresnel=True), setup))
         print(f"... reference: {name}", file=sys.stderr, flush=True)
 
 

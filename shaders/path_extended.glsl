@@ -53,6 +53,14 @@ bool is_volume(Surface s) { return s.extension.thickness > 0.0; }
 // Light goes through as it comes.
 bool is_clear(Surface s) { return v_parameters.y * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0) < 0.045; }
 
+// What facets leave of the light of a direction in which it passes a surface, or is kept within: what they hide is scattered
+// again, and lost where single scattering is asked for (Walter et al. 2007, equation 34).
+float unmasked(vec3 l, Surface s) {
+    float cosine = abs(dot(s.normal, l)), tangent2 = 1.0 / max(cosine * cosine, 1e-12) - 1.0;
+    float masked = 2.0 / (1.0 + sqrt(1.0 + s.alpha * s.alpha * tangent2));
+    return has_multiple_scattering || is_clear(s) ? 1.0 : masked;
+}
+
 // The sheen leaves what it does not reflect of light from everywhere: no energy is lost.
 vec3 scattered_above(vec3 l, Surface s) {
     vec3 h = normalize(l + s.view);
@@ -68,7 +76,8 @@ vec3 reflected(vec3 l, Surface s) {
     vec3 spread = vec3(0.0);
     if (has_transmission) {
         vec2 dfg = dfg_at(s.n_dot_v, transmitted_roughness(s));
-        float lobe = (transmitted_lobe(l, s) + transmitted_lobe(below, s)) / (dfg.x + dfg.y);
+        float kept = has_multiple_scattering ? dfg.x + dfg.y : 1.0;
+        float lobe = (transmitted_lobe(l, s) + transmitted_lobe(below, s)) / kept;
         spread = is_clear(s) ? vec3(0.0) : s.keep * s.extension.transmittance * s.through * lobe;
     }
     vec3 result = dot(l, v_face) > 0.0 ? light : spread;
@@ -135,7 +144,7 @@ float kept_part(float outer_cosine, Surface s) {
 
 // Of directions in which paths leave a volume: facets as the view sees them (Heitz 2018), refraction (Walter et al. 2007,
 // equation 17), and what Fresnel's reflectance leaves, as left_or_kept() of path_scatter_extended.frag chooses it. A path takes
-// all of the light of such a direction with it, so that this is the BTDF times the cosine, too.
+// all of the light of such a direction with it but for what unmasked() says, so that this is the BTDF times the cosine, too.
 float leaving(vec3 l, Surface s) {
     float eta = s.extension.ior;
     vec3 h = normalize(l + eta * s.view);
@@ -160,6 +169,6 @@ bool is_spreading(Surface s) { return !is_volume(s) && !is_clear(s); }
 // As those of path_plain.glsl.
 vec3 bsdf(vec3 l, Surface s) {
     vec3 outside = dot(l, v_face) > 0.0 || is_spreading(s) ? reflected(l, s) : vec3(0.0);
-    return leaves_spread(s) ? vec3(leaving(l, s)) : outside;
+    return leaves_spread(s) ? vec3(leaving(l, s) * unmasked(l, s)) : outside;
 }
 float bsdf_density(vec3 l, Surface s) { return density_of(l, s, lobes_of(s)); }

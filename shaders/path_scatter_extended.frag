@@ -43,7 +43,13 @@ vec3 left_or_kept(Surface s, vec3 h, float u) {
     float eta = s.extension.ior, cosine = dot(h, s.view);
     float sine2 = eta * eta * (1.0 - cosine * cosine), outer = sqrt(max(1.0 - sine2, 0.0));
     bool leaves = sine2 < 1.0 && u >= kept_part(outer, s);
-    return leaves ? (eta * cosine - outer) * h - eta * s.view : on_side(mirrored_by(h, s.view), 1.0);
+    return leaves ? (eta * cosine - outer) * h - eta * s.view : mirrored_by(h, s.view);
+}
+
+// What one facet lets into a volume: of what s.through says of all together, by Fresnel's reflectance at it.
+vec3 passed_by(Surface s, vec3 h) {
+    float of_all = 1.0 - luminance(s.energy.single), of_facet = 1.0 - kept_part(max(dot(h, s.view), 0.0), s);
+    return is_clear(s) ? s.through : s.through * of_facet / max(of_all, 1e-6);
 }
 
 void main() {
@@ -75,6 +81,8 @@ void main() {
     l = v_random.z < specular_end ? mirrored_by(facet_around(s.normal, t, s.view, alpha, u), s.view) : l;
     l = on_side(normalize(l), 1.0);
     bool only = is_inside();
+    vec3 passed = s.through;
+    float left = 1.0;  // of what facets hide
     if (has_transmission) {
         bool passes = v_random.z >= coat_end && v_random.z < through_end;
         float roughness = transmitted_roughness(s);
@@ -82,9 +90,14 @@ void main() {
         vec3 spread = m - 2.0 * dot(s.normal, m) * s.normal;
         vec3 h = refracting_facet(s, b1, u);
         vec3 straight = is_volume(s) ? refracted(s, h) : -s.view;
-        l = passes ? on_side(normalize(spreads ? spread : straight), -1.0) : l;
-        l = is_inside() ? normalize(left_or_kept(s, h, v_random.z)) : l;
+        straight = normalize(is_inside() ? left_or_kept(s, h, v_random.z) : straight);
+        l = passes ? on_side(spreads ? normalize(spread) : straight, -1.0) : l;
+        l = is_inside() ? (dot(straight, h) > 0.0 ? on_side(straight, 1.0) : straight) : l;
         only = only || (passes && !spreads);
+        // Facets hide all directions on their other side.
+        bool is_shown = dot(straight, h) * dot(straight, s.normal) > 0.0;
+        left = has_multiple_scattering || is_shown ? unmasked(l, s) : 0.0;
+        if (!has_multiple_scattering) passed = passed_by(s, h) * left;
     }
     o_direction = l;
     float density = density_of(l, s, lobes);
@@ -92,7 +105,7 @@ void main() {
     only = only && !(is_inside() && density > 0.0);
     o_density = only ? only_direction : density;
     o_weight = density > 0.0 ? reflected(l, s) / density : vec3(0.0);
-    o_weight = only ? s.keep * s.through / max(lobes.through, 1e-6) : o_weight;
-    o_weight = is_inside() ? vec3(1.0) : o_weight;
+    o_weight = only ? s.keep * passed / max(lobes.through, 1e-6) : o_weight;
+    o_weight = is_inside() ? vec3(left) : o_weight;
     o_keep = is_inside() ? vec3(1.0) : vec3(s.keep);
 }

@@ -259,7 +259,8 @@ void add_shading(Table& table) {
                          "Masking-shadowing function of the GGX specular BRDF: height-correlated Smith, "
                          "separable Smith, or the Schlick approximation of Unreal Engine 4."));
     table.push_back(make("shading.multiple_scattering", EASYPBR_AT(shading.multiple_scattering),
-                         "Enables multiple-scattering energy compensation of the specular BRDF."));
+                         "Enables multiple-scattering energy compensation of the specular BRDF and, in path "
+                         "traced images, of transmission through rough surfaces."));
     table.push_back(make("shading.dielectric_f0", EASYPBR_AT(shading.dielectric_f0),
                          "Reflectance F0 of dielectrics at normal incidence, for materials with the default "
                          "index of refraction.",
