@@ -134,7 +134,7 @@ TEST(Denoise, SurfacesAreMeansOfTheirFrames) {
         reflectance += color.cast<double>() / count;
         depth += std::log2(double(d)) / count;
     }
-    const SurfaceMean surface = surface_of(tile, place);
+    const SurfaceMean surface = noisy_surface_at(tile, place);
     EXPECT_EQ(surface.frames, unsigned(count));
     EXPECT_LT((surface.mean_normal().cast<double>() - normal).norm(), 4.8e-4);
     EXPECT_LT((surface.mean_reflectance().cast<double>() - reflectance).norm(), 2.4e-4);
@@ -160,7 +160,7 @@ TEST(Denoise, OtherKindsOfNoiseGoBeside) {
     EXPECT_EQ(beside.taken[7], int(Noisy::nothing));
     EXPECT_EQ(beside.radiance[0][7], 2);
     EXPECT_EQ(beside.radiance[3][7], 0.25f);
-    const NoisyPixel pixel = pixel_of(tile, 7);
+    const NoisyPixel pixel = noisy_pixel_at(tile, 7);
     EXPECT_EQ(pixel.light, Vec3(4, 4, 4));
     EXPECT_NEAR(pixel.squares, 16, 1e-5);
     EXPECT_EQ(pixel.alpha, 1);

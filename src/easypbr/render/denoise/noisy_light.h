@@ -38,7 +38,7 @@ struct NoisyPixel {
     Noisy noisy = Noisy::nothing;
 };
 
-inline NoisyPixel pixel_of(const native::NoisyTile& tile, size_t place) {
+inline NoisyPixel noisy_pixel_at(const native::NoisyTile& tile, size_t place) {
     return {{tile.light[0][place], tile.light[1][place], tile.light[2][place]},
             tile.squares[place],
             tile.alpha[place],
@@ -46,7 +46,7 @@ inline NoisyPixel pixel_of(const native::NoisyTile& tile, size_t place) {
             Noisy(tile.noisy[place])};
 }
 
-inline SurfaceMean surface_of(const native::NoisyTile& tile, size_t place) {
+inline SurfaceMean noisy_surface_at(const native::NoisyTile& tile, size_t place) {
     const auto steps = [&](const auto& of) {
         return SurfaceMean::Steps{of[0][place], of[1][place], of[2][place]};
     };
@@ -77,7 +77,7 @@ struct NoisyLight {
             for (int y = area.y; y < area.y + area.height; ++y)
                 for (int x = area.x; x < area.x + area.width; ++x)
                     visit(size_t(y) * size_t(grid.size().x()) + size_t(x),
-                          of ? surface_of(*of, TileGrid::place_of(x, y)) : SurfaceMean());
+                          of ? noisy_surface_at(*of, TileGrid::place_of(x, y)) : SurfaceMean());
         });
     }
 };

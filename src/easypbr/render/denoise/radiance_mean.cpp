@@ -267,7 +267,7 @@ RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) cons
     if (!noisy) return error;
     const int frames = tiles_.frames_of(tile, frames_);
     each(tiles_.area_of(tile), [&](size_t /*index*/, int x, int y) {
-        const NoisyPixel pixel = pixel_of(*noisy, TileGrid::place_of(x, y));
+        const NoisyPixel pixel = noisy_pixel_at(*noisy, TileGrid::place_of(x, y));
         const uint32_t count = pixel.frames;
         if (count == 0) return;
         const float deviation = std::sqrt(variance_of(pixel)),
@@ -335,7 +335,7 @@ void RadianceMean::write_mean(const Target& to, const Target* light, const std::
             const size_t place = TileGrid::place_of(x, y);
             Vec4 sum = beside ? (*beside)[place].radiance : Vec4(Vec4::Zero());
             if (noisy && noisy->frames[place] > 0) {
-                const NoisyPixel pixel = pixel_of(*noisy, place);
+                const NoisyPixel pixel = noisy_pixel_at(*noisy, place);
                 const auto count = float(pixel.frames);
                 const float open = weights_.empty() ? 1.0f : weights_[i].y() / count;
                 Vec3 seen = pixel.light;
@@ -371,7 +371,7 @@ std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfer
         const native::NoisyTile* noisy = noisy_.of(tile);
         if (!noisy) return;
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
-            const NoisyPixel pixel = pixel_of(*noisy, TileGrid::place_of(x, y));
+            const NoisyPixel pixel = noisy_pixel_at(*noisy, TileGrid::place_of(x, y));
             if (pixel.noisy == Noisy::radiance)
                 changes[i] = luminance(result[i].head<3>()) * float(pixel.frames) - coverage_[i].x();
         });
@@ -386,7 +386,7 @@ void RadianceMean::write_noisy_coverage() {
         const native::NoisyTile* noisy = noisy_.of(tile);
         if (!noisy) return;
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
-            const NoisyPixel pixel = pixel_of(*noisy, TileGrid::place_of(x, y));
+            const NoisyPixel pixel = noisy_pixel_at(*noisy, TileGrid::place_of(x, y));
             if (pixel.noisy != Noisy::radiance) return;
             const auto count = float(pixel.frames);
             const float mean = coverage_[i].x() / count, squares = coverage_[i].y() / count;
@@ -405,7 +405,7 @@ void RadianceMean::write_noisy_light() {
             to[i].setZero();
             const size_t place = TileGrid::place_of(x, y);
             if (!noisy || noisy->frames[place] == 0) return;
-            const NoisyPixel pixel = pixel_of(*noisy, place);
+            const NoisyPixel pixel = noisy_pixel_at(*noisy, place);
             to[i].head<3>() = pixel.light / float(pixel.frames);
             to[i].w() = variance_of(pixel);
         });
