@@ -331,82 +331,38 @@ RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) 
     return hit ? seen_by(place, ray, hit->distance, hit->normal) : nothing_at(place);
 }
 
-/// Rays to a packet of places.
-struct RayScene::PlaceRays {
-    PlaceRays(const Places& places, size_t first) {
-        const float *x = places.position.component(0) + first, *y = places.position.component(1) + first,
-                    *z = places.position.component(2) + first, *footprint = places.footprint.data() + first;
-        float* const from[] = {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z};
-        float* const along[] = {packet.ray.dir_x, packet.ray.dir_y, packet.ray.dir_z};
-        for (size_t k = 0; k < packet_size; ++k)
-            rounding[k] = 1e-4f * std::max(1.0f, std::sqrt(x[k] * x[k] + (y[k] * y[k] + z[k] * z[k])));
-        for (size_t k = 0; k < packet_size; ++k) near[k] = std::max(rounding[k], footprint[k]);
-        for (size_t c = 0; c < 3; ++c) {
-            const float *at = places.position.component(int(c)) + first,
-                        *back = places.view.component(int(c)) + first;
-            for (size_t k = 0; k < packet_size; ++k) from[c][k] = at[k] + near[k] * back[k];
-            for (size_t k = 0; k < packet_size; ++k) along[c][k] = -back[k];
-        }
-        for (size_t k = 0; k < packet_size; ++k) packet.ray.tfar[k] = near[k] + rounding[k];
-        std::fill_n(packet.ray.tnear, packet_size, 0.0f);
-        std::fill_n(packet.ray.time, packet_size, 0.0f);
-        std::fill_n(packet.ray.mask, packet_size, ~0u);
-        std::fill_n(packet.ray.id, packet_size, 0u);
-        std::fill_n(packet.ray.flags, packet_size, 0u);
-        std::fill_n(packet.hit.geomID, packet_size, RTC_INVALID_GEOMETRY_ID);
-    }
-
-    Vec3 from(size_t k) const { return {packet.ray.org_x[k], packet.ray.org_y[k], packet.ray.org_z[k]}; }
-    Vec3 direction(size_t k) const { return {packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]}; }
-
-    alignas(64) RTCRayHit16 packet;
-    std::array<float, packet_size> near, rounding;
-};
-
-void RayScene::see_packet(Places& places, size_t first, const PlaceRays& rays) const {
-    const RTCHit16& hit = rays.packet.hit;
-    const size_t count = std::min(packet_size, places.count - first);
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = first + k;
-        const Vec3 from = rays.from(k), direction = rays.direction(k);
-        const float to_ground = ground_distance(from, direction);
-        float distance = rays.packet.ray.tfar[k];
-        const Vec3 normal = places.normal.at(i);
-        Vec3 face = normal;
-        if (to_ground < distance) {
-            distance = to_ground;
-            face = plane_.up;
-        } else if (hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) {
-            face = towards_start({hit.Ng_x[k], hit.Ng_y[k], hit.Ng_z[k]}, direction);
-        } else {
-            places.face.set(i, normal);
-            continue;
-        }
-        const bool is_own = face.dot(normal) > 0.3f;
-        if (!is_own && !(distance < rays.near[k] - 0.02f * rays.rounding[k])) {
-            places.face.set(i, normal);
-            continue;
-        }
-        places.position.set(i, from + direction * distance);
-        places.face.set(i, face);
-        if (!is_own) places.normal.set(i, face);
-    }
-}
-
 void RayScene::see(Places& places, Transmissive transmissive) const {
+    const auto put = [&](size_t i, const Seen& seen) {
+        places.position.set(i, seen.position);
+        places.face.set(i, seen.face);
+        places.normal.set(i, seen.normal);
+    };
     if (!scene_ || scene_->calls_back) {
-        for (size_t i = 0; i < places.count; ++i) {
-            const Seen seen = seen_at(places.at(i), transmissive);
-            places.position.set(i, seen.position);
-            places.face.set(i, seen.face);
-            places.normal.set(i, seen.normal);
-        }
+        for (size_t i = 0; i < places.count; ++i) put(i, seen_at(places.at(i), transmissive));
         return;
     }
-    for_each_packet(places.count, [&](const int* valid, size_t first, size_t) {
-        PlaceRays rays(places, first);
-        embree::intersect(scene_->tree.get(), valid, rays.packet);
-        see_packet(places, first, rays);
+    for_each_packet(places.count, [&](const int* valid, size_t first, size_t count) {
+        std::array<RaySegment, packet_size> segments;
+        alignas(64) RTCRayHit16 rays;
+        for (size_t i = 0; i < packet_size; ++i) {
+            segments[i] = ray_to(places.at(first + std::min(i, count - 1)));
+            set_ray(rays.ray, i, segments[i]);
+            rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        embree::intersect(scene_->tree.get(), valid, rays);
+        for (size_t i = 0; i < count; ++i) {
+            const Place place = places.at(first + i);
+            const RaySegment& ray = segments[i];
+            const float to_ground = ground_distance(ray.from, ray.direction);
+            if (to_ground < rays.ray.tfar[i])
+                put(first + i, seen_by(place, ray, to_ground, plane_.up));
+            else if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+                put(first + i, nothing_at(place));
+            else
+                put(first + i, seen_by(place, ray, rays.ray.tfar[i],
+                                       towards_start({rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]},
+                                                     ray.direction)));
+        }
     });
 }
 

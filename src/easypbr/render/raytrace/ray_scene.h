@@ -153,7 +153,6 @@ class RayScene {
         std::vector<float> footprint;
     };
     /// The same of many places: puts what is seen there in their stead. Of neighbours in a part of the time.
-    /// Behind the last place the arrays hold others up to a multiple of native::stream_alignment.
     void see(Places& places, Transmissive transmissive) const;
     /// The surface at a place that is seen along `view`; none where its edges are rounded away.
     std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint,
@@ -173,9 +172,6 @@ class RayScene {
                                     bool meets_gaussians) const;
     /// Distance to the ground; infinity where it is not met.
     float ground_distance(const Vec3& from, const Vec3& direction) const;
-    struct PlaceRays;
-    /// What is seen at a packet of places from `first` on, once its rays are traced.
-    void see_packet(Places& places, size_t first, const PlaceRays& rays) const;
 
     void place_ground();
 
