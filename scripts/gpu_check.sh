@@ -3,21 +3,22 @@
 # FOLDER/report.md with pictures and the driver's facts. A step that fails or takes too long is reported, and the next one runs.
 # The exit status is 1 when a step failed. Without a GPU it ends, unless --software asks for a run that the report calls so.
 #
-# usage: gpu_check.sh [--software] [--carried FOLDER] [--output FOLDER] [--no-limit] [--steps "NAME..."]
+# usage: gpu_check.sh [--software] [--carried FOLDER | --installed PYTHON] [--output FOLDER] [--no-limit] [--steps "NAME..."]
 #        gpu_check.sh --fill FOLDER [--torch]    on a machine with a network and the same release of Debian or Ubuntu
 #
+# --installed: nothing is built; the package that this Python has installed is checked, for example by the wheel.
 # --no-limit: steps take as long as they need. --steps: these alone, by their names in the report.
 # --carried: nothing is fetched; packages come from a folder that --fill has filled. --torch puts PyTorch with CUDA into it (3 GB).
 set -uo pipefail
 cd "$(dirname "$0")/.."
-output=gpu-report carried='' fill='' torch='' software='' unlimited='' steps=''
+output=gpu-report carried='' installed='' fill='' torch='' software='' unlimited='' steps=''
 while [ $# -gt 0 ]; do
   case $1 in
     --software) software=1; shift ;;
     --torch) torch=1; shift ;;
     --no-limit) unlimited=1; shift ;;
-    --carried | --output | --fill | --steps)
-      [ $# -gt 1 ] || { echo "gpu_check: $1 needs a folder or names" >&2; exit 2; }
+    --carried | --installed | --output | --fill | --steps)
+      [ $# -gt 1 ] || { echo "gpu_check: $1 needs a value" >&2; exit 2; }
       declare "${1#--}=$2"; shift 2 ;;
     *) echo "gpu_check: unknown argument $1" >&2; exit 2 ;;
   esac
@@ -56,7 +57,8 @@ output=$(realpath "$output")
 export EASYPBR_DEVICE=gl EASYPBR_CACHE_DIR=$output/cache
 # Where there is no GPU the driver must still be the one that draws.
 [ -n "$gpu" ] || export EASYPBR_NATIVE=0
-python=.venv/bin/python limit_s=540 failed=0 rows=()
+python=${installed:-.venv/bin/python} program=build/easypbr limit_s=540 failed=0 rows=()
+[ -z "$installed" ] || program="$python -m easypbr"
 
 # step NAME SECONDS COMMAND: within its own limit and what is left of the nine minutes.
 step() {
@@ -95,24 +97,25 @@ $python -m pip install -q --no-index --find-links '$carried/wheels' -r scripts/r
 cp scripts/requirements.txt .venv/requirements
 END
 fi
+built() { [ -n "$installed" ] || step "$@"; }
 step facts 20 'uname -srm; grep -m1 "model name" /proc/cpuinfo; nproc; free -g | head -2; nvidia-smi || echo "no NVIDIA GPU is seen here"'
-step packages 120 "$install_packages"
-step build 270 "export CMAKE_BUILD_PARALLEL_LEVEL=\${CMAKE_BUILD_PARALLEL_LEVEL:-\$(nproc)}; set -e
+built packages 120 "$install_packages"
+built build 270 "export CMAKE_BUILD_PARALLEL_LEVEL=\${CMAKE_BUILD_PARALLEL_LEVEL:-\$(nproc)}; set -e
 # Another compiler may have warnings of its own. A build that stands is taken as it is.
 [ -e build/CMakeCache.txt ] || werror=-DEASYPBR_WERROR=OFF
 cmake --preset release \${werror:-} -DPython_EXECUTABLE=\$PWD/$python >/dev/null
 cmake --build build --target easypbr easypbr_program python_package bench_frames test_gl test_gpu
 $python scripts/link_python.py build .venv"
-step doctor 20 'build/easypbr doctor'
-step tests_gl 40 "build/tests/test_gl --gtest_brief=1 --gtest_filter='-*ShaderStandard*'"
-step tests_gpu 40 'build/tests/test_gpu --gtest_brief=1'
+step doctor 20 "$program doctor"
+built tests_gl 40 "build/tests/test_gl --gtest_brief=1 --gtest_filter='-*ShaderStandard*'"
+built tests_gpu 40 'build/tests/test_gpu --gtest_brief=1'
 step golden 60 "$python scripts/gpu_steps.py golden '$output'"
-step driver_messages 60 "cd tests/golden && EASYPBR_GL_DEBUG=1 ../../$python driver_messages.py"
+step driver_messages 60 "EASYPBR_GL_DEBUG=1 $python tests/golden/driver_messages.py"
 step cuda 40 "$python scripts/gpu_steps.py cuda '$output'"
 step recording 40 "$python scripts/gpu_steps.py recording '$output' ${gpu:+1280}"
 step textures_1_gb 60 "$python scripts/gpu_steps.py textures '$output' ${gpu:+16384}"
 step splats 60 "$python scripts/gpu_steps.py splats '$output' ${gpu:+6000}"
-step bench 120 "$python scripts/gpu_steps.py bench '$output' ${gpu:+23}"
+built bench 120 "$python scripts/gpu_steps.py bench '$output' ${gpu:+23}"
 
 {
   echo "# GPU check"

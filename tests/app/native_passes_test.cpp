@@ -11,6 +11,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/settings.h"
+#include "gpu_rounding.h"
 #include "native_shading.h"
 #include "render/render_test.h"
 
@@ -19,7 +20,6 @@ namespace {
 
 using native_shading_test::difference;
 using native_shading_test::Difference;
-using native_shading_test::has_gpu;
 
 /// Glass before a wall of labels: panes, balls and a slab, behind each other.
 Scene glasses(float roughness, float dispersion) {

@@ -6,13 +6,8 @@
 #include <cstdlib>
 
 #include "easypbr/core/image.h"
-#include "easypbr/gl/context.h"
 
 namespace easypbr::native_shading_test {
-
-inline bool has_gpu() {
-    return !gl::Context::create()->info().software;
-}
 
 /// Pixels by how far apart their largest channels are.
 struct Difference {

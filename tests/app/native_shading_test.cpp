@@ -10,6 +10,7 @@
 #include "easypbr/gl/context.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/scene/settings.h"
+#include "gpu_rounding.h"
 #include "native_shading.h"
 #include "render/render_test.h"
 

@@ -10,6 +10,7 @@
 #include "easypbr/app/custom_pass.h"
 #include "easypbr/core/error.h"
 #include "easypbr/scene/settings.h"
+#include "gpu_rounding.h"
 #include "render/render_test.h"
 
 namespace easypbr::app::own_shader_test {
@@ -93,9 +94,10 @@ TEST(OwnShader, KnowsWhereItIs) {
                         "}\n"});
     const Vec4 position = middle_of(render_linear(session));
     // Rounding of float32 at a distance of 5 from the eye: 5e-7, and that of the interpolation.
-    EXPECT_NEAR(position.x(), off, 3e-6);
-    EXPECT_NEAR(position.y(), -off, 3e-6);
-    EXPECT_NEAR(position.z(), 0, 3e-6);
+    const double rounding = 3e-6 + 2 * off * vertex_rounding();  // a pixel is 2 * off wide
+    EXPECT_NEAR(position.x(), off, rounding);
+    EXPECT_NEAR(position.y(), -off, rounding);
+    EXPECT_NEAR(position.z(), 0, rounding);
     const Vec4 albedo = middle_of(session.render_layers({"albedo"}).at("albedo"));
     // The square is 20 wide.
     EXPECT_NEAR(albedo.x(), 0.5 + off / 20, 1.0 / 65535);
@@ -127,7 +129,7 @@ TEST(OwnShader, MovesWithTheMeshAndTurnsItsNormal) {
                         "}\n"});
     session.scene().get("square").set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-2, 0, 0)));
     const float off = 5 * std::tan(radians(15.0f)) / side;
-    EXPECT_NEAR(middle_of(render_linear(session)).x(), 2 + off, 3e-6);
+    EXPECT_NEAR(middle_of(render_linear(session)).x(), 2 + off, 3e-6 + 2 * off * vertex_rounding());
     const Vec4 normal = middle_of(session.render_layers({"normal_world"}).at("normal_world"));
     EXPECT_NEAR(normal.x(), 1, 1e-4);  // 16 bits of an octahedron: 0.004 degrees
 }

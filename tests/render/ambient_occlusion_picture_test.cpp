@@ -126,9 +126,10 @@ TEST(AmbientOcclusion, FurnaceHoldsWithSteepNormalMaps) {
                             const float* p = image.at<float>(x, y);
                             if (p[3] != 1) continue;
                             ++seen;
-                            // 0.5 % as without a map.
-                            ASSERT_NEAR(p[1] / 0.7f, 1, 0.005) << "metal " << metal << ", roughness "
-                                                               << roughness << ", samples " << samples;
+                            // 0.5 % as without a map; GPUs blend texels in steps of 1/256.
+                            ASSERT_NEAR(p[1] / 0.7f, 1, has_gpu() ? 0.006 : 0.005)
+                                << "metal " << metal << ", roughness " << roughness << ", samples "
+                                << samples;
                         }
                     EXPECT_GT(seen, 400);
                 }

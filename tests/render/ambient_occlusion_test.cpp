@@ -8,7 +8,9 @@ namespace easypbr::ambient_occlusion_test {
 namespace {
 
 // A plane sees all of its hemisphere, at the borders of the picture too. 0.98 is required; a pixel's place
-// beside a slice must not matter, so what is left is the rounding of 16-bit normals and visibilities.
+// beside a slice must not matter, so what is left is the rounding of 16-bit normals and visibilities; on a
+// GPU depths are those of places vertex_rounding() beside the pixels, steeper against the normal the flatter
+// the view.
 TEST(AmbientOcclusion, OpenPlaneIsOpenAtAnyAngle) {
     Scene scene;
     scene.show(floor_quad(1), "floor");
@@ -24,7 +26,8 @@ TEST(AmbientOcclusion, OpenPlaneIsOpenAtAnyAngle) {
                     place(session, Vec3d(0, 1.2 * std::cos(a), 1.2 * std::sin(a)), Vec3d(0, 0, 0), 60);
                     const Difference d = difference(Occlusion(session), [](int, int) { return 1.0; });
                     EXPECT_GT(d.count, 300);
-                    EXPECT_LT(d.max, 0.002) << angle << " degrees, projection " << int(projection);
+                    EXPECT_LT(d.max, 0.002 + 8 * vertex_rounding())
+                        << angle << " degrees, projection " << int(projection);
                 }
 }
 

@@ -204,6 +204,7 @@ TEST(GaussianSplats, DoNotDependOnTheirOrder) {
         scene.show(Mesh(mesh_of({shown.begin(), shown.begin() + long(half)})), "first");
         scene.show(Mesh(mesh_of({shown.begin() + long(half), shown.end()})), "second");
         app::Session session = session_of(scene, 96);
+        session.use_device(DrawDevice::cpu);  // A GPU keeps the order of splats that are equally deep.
         return render_linear(session);
     };
     EXPECT_TRUE(std::ranges::equal(picture_of(splats).bytes(), picture_of(others).bytes()));

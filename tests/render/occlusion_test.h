@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "gpu_rounding.h"
 #include "ray_caster.h"
 #include "render_test.h"
 
@@ -69,7 +70,7 @@ inline double ray_cast_visibility(const RayCaster& caster, const Vec3& position,
                                   float radius, float falloff, int count = 512) {
     const Vec3 n = normal.normalized(), t = n.unitOrthogonal(), b = n.cross(t);
     // Off the surface by more than the rounding of its position.
-    const Vec3 from = position + n * (1e-4f * radius);
+    const Vec3 from = position + n * (1e-3f * radius);
     double open = 0;
     for (int i = 0; i < count; ++i) {
         const double r = std::sqrt((i + 0.5) / count), angle = i * pi * (3 - std::sqrt(5.0));

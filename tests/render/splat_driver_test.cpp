@@ -42,11 +42,22 @@ app::Session session_of(const Scene& scene) {
     return session;
 }
 
-std::vector<float> picture(app::Session& session, bool native) {
-    session.allow_native_geometry(native);
-    session.allow_native_shading(native);
+std::vector<float> picture_of(app::Session& session) {
     const Image image = session.render({std::nullopt, 1, app::Encoding::scene_linear});
     return {image.pixels<float>().begin(), image.pixels<float>().end()};
+}
+
+std::vector<float> picture(app::Session& session, bool native) {
+    if (native) {  // on machines with a GPU too
+        app::Session by_cpu(session.scene());
+        by_cpu.use_device(DrawDevice::cpu);
+        by_cpu.settings() = session.settings();
+        return picture_of(by_cpu);
+    }
+    session.use_device(DrawDevice::gl);
+    session.allow_native_geometry(false);
+    session.allow_native_shading(false);
+    return picture_of(session);
 }
 
 struct Difference {

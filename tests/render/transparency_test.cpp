@@ -350,7 +350,7 @@ TEST(Transparency, FilesHoldStraightAlpha) {
     const Image half = session.render();
     scene.get("glass").set_material(flat_color(Vec3(0.8f, 0.4f, 0.2f), 1));
     const Image whole = session.render();
-    EXPECT_EQ(half.at<uint8_t>(8, 8)[3], 128);
+    EXPECT_NEAR(half.at<uint8_t>(8, 8)[3], 127.5, 0.5);  // in the middle of two codes
     EXPECT_EQ(whole.at<uint8_t>(8, 8)[3], 255);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(half.at<uint8_t>(8, 8)[c], whole.at<uint8_t>(8, 8)[c], 1);
 }
