@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <atomic>
+
 #include "easypbr/gl/context.h"
 
 namespace easypbr::gl {
@@ -84,7 +86,10 @@ void DeletionQueue::close() {
 }
 
 Object::Object(ObjectKind kind, uint32_t target)
-    : queue_(Context::with_driver().deletions()), id_(create_name(kind, target)), kind_(kind) {}
+    : queue_(Context::with_driver().deletions()), id_(create_name(kind, target)), kind_(kind) {
+    static std::atomic<uint64_t> last{0};
+    serial_ = ++last;
+}
 
 void Object::reset() {
     if (!id_) return;
@@ -94,6 +99,7 @@ void Object::reset() {
     else
         queue_->push(kind_, id_);
     id_ = 0;
+    serial_ = 0;
     queue_.reset();
 }
 

@@ -35,15 +35,22 @@ class Object {
     explicit Object(ObjectKind kind, uint32_t target = 0);
     ~Object() { reset(); }
     Object(Object&& other) noexcept
-        : queue_(std::move(other.queue_)), id_(std::exchange(other.id_, 0)), kind_(other.kind_) {}
+        : queue_(std::move(other.queue_)),
+          id_(std::exchange(other.id_, 0)),
+          serial_(std::exchange(other.serial_, 0)),
+          kind_(other.kind_) {}
     Object& operator=(Object&& other) noexcept {
         std::swap(queue_, other.queue_);
         std::swap(id_, other.id_);
+        std::swap(serial_, other.serial_);
         std::swap(kind_, other.kind_);
         return *this;
     }
 
     uint32_t id() const { return uint32_t(id_); }
+    /// Tells it from all objects before and after it, where drivers give the names of deleted objects again.
+    /// 0 when it is empty.
+    uint64_t serial() const { return serial_; }
     /// A fence's.
     void* pointer() const { return reinterpret_cast<void*>(id_); }
     explicit operator bool() const { return id_ != 0; }
@@ -52,6 +59,7 @@ class Object {
   private:
     std::shared_ptr<DeletionQueue> queue_;
     uintptr_t id_ = 0;
+    uint64_t serial_ = 0;
     ObjectKind kind_ = ObjectKind::buffer;
 };
 

@@ -172,6 +172,14 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colors, const Texture* 
     require_complete();
 }
 
+void Framebuffer::attach(std::span<const Texture* const> colors, const Texture* depth) {
+    std::vector<uint64_t> serials{depth ? depth->serial() : 0};
+    for (const Texture* color : colors) serials.push_back(color->serial());
+    if (object_ && attached_ == serials) return;
+    *this = Framebuffer(colors, depth);
+    attached_ = std::move(serials);
+}
+
 Framebuffer::Framebuffer(std::initializer_list<const Texture*> arrays, int layer)
     : object_(ObjectKind::framebuffer),
       width_((*arrays.begin())->width()),

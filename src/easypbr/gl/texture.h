@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <span>
+#include <vector>
 
 #include "easypbr/gl/object.h"
 
@@ -56,6 +57,8 @@ class Texture {
     void bind(unsigned unit) const;
 
     uint32_t id() const { return object_.id(); }
+    /// As Object::serial().
+    uint64_t serial() const { return object_.serial(); }
     Format format() const { return format_; }
     int width() const { return width_; }
     int height() const { return height_; }
@@ -81,6 +84,13 @@ class Framebuffer {
     /// to it.
     Framebuffer(const Texture& array, int layer) : Framebuffer({&array}, layer) {}
     Framebuffer(std::initializer_list<const Texture*> arrays, int layer);
+
+    /// Made again unless it is of these textures, and of no others, already. Throws ContextError when the
+    /// driver cannot draw to them.
+    void attach(std::span<const Texture* const> colors, const Texture* depth = nullptr);
+    void attach(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr) {
+        attach(std::span(colors.begin(), colors.size()), depth);
+    }
 
     /// One mip level, with the viewport on it. Throws ContextError when the driver cannot draw to it.
     static Framebuffer of_level(const Texture& texture, int level);
@@ -109,6 +119,7 @@ class Framebuffer {
     void read_to(unsigned index, Format format, int x, int y, int width, int height, void* to) const;
 
     Object object_;
+    std::vector<uint64_t> attached_;  ///< serials of what attach() was called with, 0 for no depth
     int width_ = 0, height_ = 0;
 };
 

@@ -13,19 +13,10 @@ void TransparencyPass::begin(const Frame& frame, const GBuffer& targets, const g
         layer_ = GBuffer(frame.size);
         layer_.from_behind = true;
         limit_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
-        radiance_id_ = overlay_id_ = 0;
     }
     if (extensions) layer_.add_extensions();
-    // The identity of a texture may be given again once it is deleted, but then the targets' size has
-    // changed, and the layer with it.
-    if (radiance_id_ != targets.radiance.attachment().id()) {
-        radiance_ = gl::Framebuffer({&targets.radiance.drawn()}, &layer_.depth_test());
-        radiance_id_ = targets.radiance.attachment().id();
-    }
-    if (with_overlay && overlay_id_ != targets.overlay.attachment().id()) {
-        overlay_ = gl::Framebuffer({&targets.overlay.drawn()}, &layer_.depth_test());
-        overlay_id_ = targets.overlay.attachment().id();
-    }
+    radiance_.attach({&targets.radiance.drawn()}, &layer_.depth_test());
+    if (with_overlay) overlay_.attach({&targets.overlay.drawn()}, &layer_.depth_test());
     peel_ = {&opaque, true};
     count_ = 0;
 }

@@ -68,7 +68,6 @@ class TransparencyPass {
     GBuffer layer_, exits_;
     gl::Texture limit_;
     gl::Framebuffer radiance_, overlay_;  ///< the picture's targets with the layer's depth test
-    uint32_t radiance_id_ = 0, overlay_id_ = 0;
     gl::OcclusionQuery query_;
     Peel peel_;
     TransmissionInputs transmission_;

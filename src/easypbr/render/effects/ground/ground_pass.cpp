@@ -69,19 +69,12 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
 }
 
 const Target& GroundPass::light_of(const Frame& frame, gl::Format format) {
-    if (light_.size() != frame.size || light_.format() != format) {
-        light_ = Target(format, frame.size);
-        depth_id_ = 0;
-    }
+    if (light_.size() != frame.size || light_.format() != format) light_ = Target(format, frame.size);
     return light_;
 }
 
 void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
-    const gl::Texture& texture = caught_light(frame).drawn();
-    if (depth_id_ != targets.depth_test().id()) {
-        light_framebuffer_ = gl::Framebuffer({&texture}, &targets.depth_test());
-        depth_id_ = targets.depth_test().id();
-    }
+    light_framebuffer_.attach({&caught_light(frame).drawn()}, &targets.depth_test());
     const float zero[4] = {0, 0, 0, 0};
     light_framebuffer_.clear_color(0, zero);
 }

@@ -49,7 +49,6 @@ class GroundPass {
 
     Target light_;
     gl::Framebuffer light_framebuffer_;
-    uint32_t depth_id_ = 0;  ///< of the depth test that the framebuffer has
     ProgramVariants surface_{"screen_triangle.vert", "geometry_ground.frag"};
     ScreenShader finish_{"ground_finish.frag", native::Shader::ground_finish};
 };

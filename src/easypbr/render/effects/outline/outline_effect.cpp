@@ -50,10 +50,7 @@ void OutlineEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
     found_.bind();
     // An edge lies between a pixel and the one after it: the first row before the content has some too.
     finding_.draw(edges, screen_state(grown(frame.covered, 1, frame.size)));
-    if (overlay_id_ != inputs.targets.overlay.attachment().id()) {
-        overlay_ = gl::Framebuffer({&inputs.targets.overlay.drawn()});
-        overlay_id_ = inputs.targets.overlay.attachment().id();
-    }
+    overlay_.attach({&inputs.targets.overlay.drawn()});
     lit.covered = grown(lit.covered, line_reach(frame.resolved->settings.outline), frame.size);
     overlay_.bind();
     lines_.draw(line_inputs(frame), screen_state(lit.covered, gl::over));

@@ -26,7 +26,6 @@ class OutlineEffect : public Effect {
     Target edges_;  ///< RG8: whether an edge lies between a pixel and the next one to the right, and below
     gl::Framebuffer found_;
     gl::Framebuffer overlay_;
-    uint32_t overlay_id_ = 0;
     ScreenShader finding_{"outline_edges.frag", native::Shader::outline_edges};
     ScreenShader lines_{"outline_lines.frag", native::Shader::outline_lines};
 };

@@ -85,12 +85,11 @@ void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuf
 }
 
 void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets) {
-    if (!depth_ || overlay_id_ != targets.overlay.attachment().id()) {
+    if (Vec2i(depth_.width(), depth_.height()) != frame.size) {
         depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
-        framebuffer_ = gl::Framebuffer({&targets.overlay.drawn()}, &depth_);
-        overlay_id_ = targets.overlay.attachment().id();
         last_depth_ = gl::Texture();
     }
+    framebuffer_.attach({&targets.overlay.drawn()}, &depth_);
     in_host_memory_ = false;
     framebuffer_.bind();
     framebuffer_.clear_depth(0);

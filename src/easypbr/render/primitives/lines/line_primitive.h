@@ -41,7 +41,6 @@ class LinePrimitive final : public Primitive {
     Target nearest_;  ///< R32F, natively: reversed depth of the nearest line
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
-    uint32_t overlay_id_ = 0;
     bool in_host_memory_ = false;                         ///< where the nearest depths are
     const Target *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin()
     bool has_last_ = false;

@@ -8,7 +8,6 @@ void SurfelLayers::begin(const Frame& frame, std::span<const DrawItem> items, co
     if (!claim_ || claim_.width() != w || claim_.height() != h) {
         claim_ = gl::Texture(gl::Format::rgba32f, w, h);
         limits_.clear();
-        layer_id_ = 0;
     }
     // Of another picture's items none is needed any more.
     if (limits_.size() != items.size()) limits_ = std::vector<Limit>(items.size());
@@ -24,13 +23,9 @@ void SurfelLayers::begin(const Frame& frame, std::span<const DrawItem> items, co
 void SurfelLayers::draw(const Frame& frame, std::span<const DrawItem> items, const GBuffer& layer,
                         const SurfaceOutputs& outputs) {
     if (items.empty()) return;
-    // An identity may be given again, but not with another size: then claim_ is new too.
-    if (layer_id_ != layer.albedo.attachment().id()) {
-        layer_ = gl::Framebuffer({&layer.albedo.drawn(), &layer.normal.drawn(), &layer.material.drawn(),
-                                  &layer.depth.drawn(), &layer.radiance.drawn(), &claim_},
-                                 &layer.depth_test());
-        layer_id_ = layer.albedo.attachment().id();
-    }
+    layer_.attach({&layer.albedo.drawn(), &layer.normal.drawn(), &layer.material.drawn(),
+                   &layer.depth.drawn(), &layer.radiance.drawn(), &claim_},
+                  &layer.depth_test());
     const float nobody[4] = {0, 0, 0, 0};
     layer_.clear_color(5, nobody);
     for (size_t i = 0; i < items.size(); ++i) {

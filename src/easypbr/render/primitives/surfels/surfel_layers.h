@@ -39,7 +39,6 @@ class SurfelLayers {
     gl::Texture
         claim_;  ///< RGBA32F, r: 1 + place of the item whose surface the layer holds; g: its band's end
     gl::Framebuffer layer_;
-    uint32_t layer_id_ = 0;
     std::vector<Limit> limits_;  ///< one for each item
     ProgramVariants take_{"screen_triangle.vert", "surfel_limit.frag"};
 };
