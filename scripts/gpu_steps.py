@@ -53,7 +53,7 @@ def cuda(folder: pathlib.Path, _: int) -> int:
     scene = Scene()
     scene.show(shapes.sphere(1.0, 256))
     view = Viewer((1920, 1080), scene=scene)
-    names = ["color", "depth", "normal_camera", "position"]
+    names = ["color", "depth", "normal_camera", "albedo", "instance_id"]
     found = {}
     for device in ("cpu", "cuda"):
         seconds = []
@@ -63,9 +63,13 @@ def cuda(folder: pathlib.Path, _: int) -> int:
             torch.cuda.synchronize()
             seconds.append(time.perf_counter() - start)
         print(f"{device}: {1000 * min(seconds):.2f} ms for {', '.join(names)} of 1920 x 1080")
-    # Positions and depths are read through other formats of numbers: a thousandth, as in tests/python/test_cuda.py.
-    fine = all(torch.allclose(found["cuda"][n].cpu(), found["cpu"][n], rtol=0, atol=1e-3) for n in names)
-    print("the same values" if fine else "other values")
+    fine = True
+    for name in names:
+        apart = (found["cuda"][name].cpu().double() - found["cpu"][name].double()).abs()
+        part = (apart > 1e-3).double().mean().item()
+        print(f"{name}: {100 * part:.4f} % of the values are more than 1e-3 apart, at most {apart.max().item():.6f}")
+        # The rasteriser's depths have its rounding, which is more where a surface is seen from its side.
+        fine &= part < 1e-3
     return 0 if fine else 1
 
 
