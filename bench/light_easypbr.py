@@ -28,6 +28,8 @@ def view_of(setup):
         mesh = Mesh(shape.V, shape.F)
         mesh.material = Material(base_color=shape.color, metallic=float(shape.kind == light_scenes.CONDUCTOR),
                                  roughness=shape.roughness, emissive=(shape.emission,) * 3)
+        if shape.kind == light_scenes.DIFFUSE and not setup.matt:
+            mesh.material.specular = 0.0
         if shape.kind == light_scenes.GLASS:
             mesh.material.transmission = mesh.material.thickness = 1.0
             mesh.material.ior = 1.5

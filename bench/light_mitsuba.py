@@ -19,10 +19,11 @@ REFERENCE_SAMPLES = 256  # of a pass
 BETWEEN_HALVES = 0.015  # FLIP; that of noise in their mean is below 0.01
 
 
-def bsdf(shape, fresnel):
+def bsdf(shape, as_gltf):
     color = {"type": "rgb", "value": [float(c) for c in shape.color]}
-    if shape.kind == light_scenes.CONDUCTOR and fresnel:
-        return {"type": "principled", "base_color": color, "roughness": shape.roughness, "metallic": 1.0}
+    metallic = {light_scenes.CONDUCTOR: 1.0, light_scenes.PLASTIC: 0.0}.get(shape.kind)
+    if as_gltf and metallic is not None:
+        return {"type": "gltf", "base_color": color, "roughness": shape.roughness, "metallic": metallic}
     if shape.kind == light_scenes.CONDUCTOR:
         return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": shape.roughness ** 2,
                 "specular_reflectance": color}
@@ -34,9 +35,9 @@ def bsdf(shape, fresnel):
     return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
 
 
-def mesh(shape, fresnel):
+def mesh(shape, as_gltf):
     properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict(bsdf(shape, fresnel))
+    properties["bsdf"] = mi.load_dict(bsdf(shape, as_gltf))
     if shape.emission:
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": shape.emission}})
     made = mi.Mesh("shape", len(shape.V), len(shape.F), props=properties)
@@ -47,8 +48,8 @@ def mesh(shape, fresnel):
     return made
 
 
-def scene_of(setup, fresnel=False):
-    """Metals are white at grazing angles with `fresnel`, as those of glTF and of rasterisers are; without, they cost less."""
+def scene_of(setup, as_gltf=False):
+    """Metals and dielectrics are Mitsuba's own, which cost less, or those of glTF, which the other renderers have."""
     transform = mi.ScalarTransform4f()
     scene = {
         "type": "scene", "integrator": {"type": "path", "max_depth": 9, "hide_emitters": not setup.shows_emitters},
@@ -65,7 +66,7 @@ def scene_of(setup, fresnel=False):
     for i, (position, intensity) in enumerate(setup.lamps):
         scene[f"lamp{i}"] = {"type": "point", "position": list(position), "intensity": {"type": "rgb", "value": intensity}}
     for i, shape in enumerate(setup.shapes):
-        scene[f"shape{i}"] = mesh(shape, fresnel)
+        scene[f"shape{i}"] = mesh(shape, as_gltf)
     return mi.load_dict(scene)
 
 
@@ -96,13 +97,16 @@ def write_references(folder):
     for name, setup in light_scenes.read_all(folder).items():
         path = folder / f"reference {name}.npy"
         if not path.exists():
-            np.save(path, reference(scene_of(setup, fresnel=True), setup))
+            np.save(path, reference(scene_of(setup, as_gltf=True), setup))
         print(f"... reference: {name}", file=sys.stderr, flush=True)
 
 
 def main():
     variant = os.environ["MITSUBA_VARIANT"]
     mi.set_variant(variant)
+    from gltf_bsdf import GltfBsdf  # needs a variant
+
+    mi.register_bsdf("gltf", GltfBsdf)
     if sys.argv[1] == "--references":
         write_references(pathlib.Path(sys.argv[2]))
         return

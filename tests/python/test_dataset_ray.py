@@ -47,7 +47,7 @@ def test_a_worker_that_dies_changes_nothing(tmp_path):
                 killed.append(busy[0])
             time.sleep(0.005)
 
-    killer = threading.Thread(target=kill_one)
+    killer = threading.Thread(target=kill_one, daemon=True)
     killer.start()
     statistics = generate(spec, tmp_path / "ray", workers=2, engine="ray")
     killer.join()

@@ -243,7 +243,7 @@ def test_other_threads_run_meanwhile():
             ticks.append(1)
             done.wait(0.001)
 
-    other = threading.Thread(target=count)
+    other = threading.Thread(target=count, daemon=True)
     other.start()
     before = len(ticks)
     mesh.smooth(50)

@@ -243,7 +243,7 @@ def test_other_threads_run_while_a_picture_is_drawn(sphere):
             ticks.append(time.monotonic())
             time.sleep(0.001)
 
-    thread = threading.Thread(target=count)
+    thread = threading.Thread(target=count, daemon=True)
     thread.start()
     start = time.monotonic()
     view.render(samples=64)
