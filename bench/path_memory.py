@@ -3,8 +3,9 @@
 
 usage: path_memory.py [WIDTHxHEIGHT]            default 1920x1080
 
-Each picture is drawn by a process of its own; what one of 64x36 takes is subtracted.
+With the denoiser oidn too where the package pyoidn is installed. Each picture is drawn by a process of its own; what one of 64x36 takes is subtracted.
 """
+import importlib.util
 import re
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from pathlib import Path
 
 from easypbr import Scene, Viewer, shapes
 
-DENOISERS = ("off", "filter")
+DENOISERS = ("off", "filter", *(["oidn"] if importlib.util.find_spec("pyoidn") else []))
 
 
 def draw(width: int, height: int, denoise: str) -> None:

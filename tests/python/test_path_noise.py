@@ -42,6 +42,32 @@ except easypbr.Error as error:
     assert "pip install pyoidn" in done.stdout
 
 
+def test_the_library_gets_light_with_its_guides(tmp_path: pathlib.Path) -> None:
+    """A caught shadow is that of a white ground: dark where light is missing, as the surfaces beside it are."""
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-o", tmp_path / "libOpenImageDenoise.so.2",
+                    pathlib.Path(__file__).parent / "fake_oidn.c"], check=True)
+    program = """import easypbr, numpy as np, sys
+scene = easypbr.Scene()
+scene.show(easypbr.shapes.sphere(1), "ball")
+settings = {"path": {"enabled": True}, "ground": {"mode": "shadow"}, "lights": {"fill": {"enabled": False}, "rim": {"enabled": False}}}
+pictures = [easypbr.Viewer((64, 48), {**settings, "path": {"enabled": True, "denoise": how}}, scene=scene).render(samples=16)
+            for how in ("off", "oidn")]
+np.save(sys.argv[1], pictures)
+"""
+    environment = {**os.environ, "EASYPBR_OIDN": str(tmp_path), "FAKE_OIDN_FOLDER": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", program, tmp_path / "pictures.npy"], env=environment, check=True)
+    off, oidn = np.load(tmp_path / "pictures.npy").astype(int)
+    # It changes nothing, so that what it is given comes back; 1 - (1 - x) rounds.
+    assert np.abs(off - oidn).max() <= 1
+    color, albedo, normal = (np.fromfile(tmp_path / name, np.float32).reshape(48, 64, 3) for name in ("color", "albedo", "normal"))
+    ground = (albedo > 0.999).all(-1) & (normal[..., 1] > 0.999)
+    assert ground.sum() > 200
+    assert color[ground].max() > 0.95 and color[ground].min() < 0.6
+    # Where the picture is dark the ground is.
+    assert np.corrcoef(color[ground][:, 0], off[ground][:, 0])[0, 1] > 0.9
+    assert "maxMemoryMB 800" in (tmp_path / "numbers").read_text()
+
+
 def test_squares_that_end_by_their_noise_do_not_depend_on_threads() -> None:
     program = """import hashlib, os, sys
 if sys.argv[1] == "one":

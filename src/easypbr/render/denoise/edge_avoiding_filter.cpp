@@ -20,7 +20,7 @@ constexpr float least_reflectance = 0.001f;
 /// back.
 void change_colors(const Target& light, const NoisyLight& noisy, bool out) {
     const auto pixels = light.pixels<Vec4>();
-    noisy.each([&](size_t i, const SurfaceMean& surface) {
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy /*of*/) {
         if (surface.frames == 0) return;
         const Vec3 reflectance = noisy.reflectance(surface).cwiseMax(least_reflectance);
         const float of_luminance = luminance(reflectance);
@@ -43,7 +43,7 @@ float packed(const Vec3& values) {
 void EdgeAvoidingFilter::write_guides(const NoisyLight& noisy) {
     guides_.write(guides_.whole());
     const auto to = guides_.pixels<Vec4>();
-    noisy.each([&](size_t i, const SurfaceMean& surface) {
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy /*of*/) {
         to[i] = Vec4(packed(SurfaceMean::values(surface.normal)), packed(noisy.reflectance(surface)),
                      surface.depth, float(surface.frames));
     });

@@ -67,7 +67,7 @@ struct NoisyLight {
         return is_white ? Vec3(Vec3::Ones()) : surface.mean_reflectance();
     }
 
-    /// Calls visit(index, surface) for each pixel, by its index row by row, on all cores.
+    /// Calls visit(index, surface, of what light is) for each pixel, by its index row by row, on all cores.
     template <class Visit>
     void each(Visit&& visit) const {
         const TileGrid& grid = pixels.grid();
@@ -75,9 +75,12 @@ struct NoisyLight {
             const native::NoisyTile* of = pixels.of(tile);
             const PixelRect area = grid.area_of(tile);
             for (int y = area.y; y < area.y + area.height; ++y)
-                for (int x = area.x; x < area.x + area.width; ++x)
+                for (int x = area.x; x < area.x + area.width; ++x) {
+                    const size_t place = TileGrid::place_of(x, y);
                     visit(size_t(y) * size_t(grid.size().x()) + size_t(x),
-                          of ? noisy_surface_at(*of, TileGrid::place_of(x, y)) : SurfaceMean());
+                          of ? noisy_surface_at(*of, place) : SurfaceMean(),
+                          of ? Noisy(of->noisy[place]) : Noisy::nothing);
+                }
         });
     }
 };

@@ -21,6 +21,10 @@ namespace fs = std::filesystem;
 // enumerations.
 constexpr int cpu_device = 1, format_float3 = 3;
 
+/// That the library may take for an image: less takes longer for one of 1920 x 1080 pixels, while without a
+/// limit memory grows with the image.
+constexpr int most_memory_mb = 800;
+
 struct Library {
     void* (*new_device)(int type);
     void (*release_device)(void* device);
@@ -34,6 +38,7 @@ struct Library {
     void (*set_image)(void* filter, const char* name, void* pixels, int format, size_t width, size_t height,
                       size_t offset, size_t pixel_stride, size_t row_stride);
     void (*set_filter_bool)(void* filter, const char* name, bool value);
+    void (*set_filter_int)(void* filter, const char* name, int value);
     void (*commit_filter)(void* filter);
     void (*execute_filter)(void* filter);
 };
@@ -85,6 +90,7 @@ bool load_all(void* handle, Library& to) {
            load(handle, to.release_filter, "oidnReleaseFilter") &&
            load(handle, to.set_image, "oidnSetSharedFilterImage") &&
            load(handle, to.set_filter_bool, "oidnSetFilterBool", "oidnSetFilter1b") &&
+           load(handle, to.set_filter_int, "oidnSetFilterInt", "oidnSetFilter1i") &&
            load(handle, to.commit_filter, "oidnCommitFilter") &&
            load(handle, to.execute_filter, "oidnExecuteFilter");
 }
@@ -143,28 +149,37 @@ const Target& OpenImageDenoise::denoise(const NoisyLight& noisy) {
         oidn->commit_device(device_);
         check(*oidn, device_);
     }
-    const size_t count = noisy.light.pixels<Vec4>().size();
-    std::vector<Vec4> normal(count, Vec4::Zero()), albedo(count, Vec4::Zero());
-    noisy.each([&](size_t i, const SurfaceMean& surface) {
-        if (surface.frames == 0) return;
-        normal[i].head<3>() = surface.mean_normal();
-        albedo[i].head<3>() = noisy.reflectance(surface);
-    });
     noisy.scratch.write(noisy.scratch.whole());
-    void* filter = oidn->new_filter(device_, "RT");
-    const auto image = [&](const char* name, std::span<Vec4> pixels) {
-        oidn->set_image(filter, name, pixels.data(), format_float3, size_t(noisy.light.width()),
-                        size_t(noisy.light.height()), 0, sizeof(Vec4), 0);
+    const size_t count = noisy.light.pixels<Vec4>().size();
+    std::vector<Vec3> normal(count, Vec3::Zero()), albedo(count, Vec3::Zero());
+    const std::span<Vec4> light = noisy.light.pixels<Vec4>(), output = noisy.scratch.pixels<Vec4>();
+    // A catcher beside surfaces is a white one, whose shadows are dark: what it lets through.
+    const auto turn_coverage = [&](std::span<Vec4> values, size_t i, Noisy of) {
+        if (!noisy.is_white && of == Noisy::coverage)
+            values[i].head<3>() = Vec3::Ones() - values[i].head<3>();
     };
-    image("color", noisy.light.pixels<Vec4>());
-    image("albedo", albedo);
-    image("normal", normal);
-    image("output", noisy.scratch.pixels<Vec4>());
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy of) {
+        if (surface.frames == 0) return;
+        normal[i] = surface.mean_normal();
+        albedo[i] = noisy.reflectance(surface);
+        turn_coverage(light, i, of);
+    });
+    void* filter = oidn->new_filter(device_, "RT");
+    const auto image = [&](const char* name, auto pixels) {
+        oidn->set_image(filter, name, pixels.data(), format_float3, size_t(noisy.light.width()),
+                        size_t(noisy.light.height()), 0, sizeof pixels[0], 0);
+    };
+    image("color", light);
+    image("albedo", std::span(albedo));
+    image("normal", std::span(normal));
+    image("output", output);
     oidn->set_filter_bool(filter, "hdr", true);
+    oidn->set_filter_int(filter, "maxMemoryMB", most_memory_mb);
     oidn->commit_filter(filter);
     oidn->execute_filter(filter);
     oidn->release_filter(filter);
     check(*oidn, device_);
+    noisy.each([&](size_t i, const SurfaceMean& /*surface*/, Noisy of) { turn_coverage(output, i, of); });
     return noisy.scratch;
 }
 

@@ -189,11 +189,10 @@ void RadianceMean::begin_weights() {
     if (open_.empty() || !weights_.empty()) return;
     // Nothing was over the frames before.
     weights_.assign(open_.size(), Vec2(float(frames_), 0));
-    each({0, 0, tiles_.size().x(), tiles_.size().y()},
-         [&](size_t i, int x, int y) {
-             const native::NoisyTile* tile = noisy_.of(tiles_.tile_at(x, y));
-             weights_[i].y() = tile ? float(tile->frames[TileGrid::place_of(x, y)]) : 0.0f;
-         });
+    each({0, 0, tiles_.size().x(), tiles_.size().y()}, [&](size_t i, int x, int y) {
+        const native::NoisyTile* tile = noisy_.of(tiles_.tile_at(x, y));
+        weights_[i].y() = tile ? float(tile->frames[TileGrid::place_of(x, y)]) : 0.0f;
+    });
 }
 
 void RadianceMean::add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces) {
@@ -208,8 +207,8 @@ void RadianceMean::add_to_tile(size_t tile, const PixelRect& area, const FrameSu
     native::BesideNoisy beside;
     for (int y = area.y; y < area.y + area.height; ++y) {
         const PixelRect row{area.x, y, area.width, 1};
-        const bool has_beside = native::add_noisy_row(rows.at(left, row, index_of(area.x, y)),
-                                                      y % TileGrid::side, noisy, beside);
+        const bool has_beside =
+            native::add_noisy_row(rows.at(left, row, index_of(area.x, y)), y % TileGrid::side, noisy, beside);
         add_row(tile, row, beside, has_beside);
     }
 }
@@ -239,8 +238,7 @@ void RadianceMean::add_beside(size_t tile, const PixelRect& area) {
     each(area, [&](size_t i, int x, int y) {
         if (!weights_.empty()) weights_[i].x() += open_part(i);
         const Vec4 beside = open_part(i) * *sample.at(x, y);
-        if ((beside.array() != 0).any())
-            beside_.make(tile)[TileGrid::place_of(x, y)].radiance += beside;
+        if ((beside.array() != 0).any()) beside_.make(tile)[TileGrid::place_of(x, y)].radiance += beside;
     });
 }
 
