@@ -53,7 +53,7 @@ def cuda(folder: pathlib.Path, _: int) -> int:
     scene = Scene()
     scene.show(shapes.sphere(1.0, 256))
     view = Viewer((1920, 1080), scene=scene)
-    names = ["color", "depth", "normal_camera", "albedo", "instance_id"]
+    names = ["color", "depth", "normal_camera", "position", "instance_id"]
     found = {}
     for device in ("cpu", "cuda"):
         seconds = []

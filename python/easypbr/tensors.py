@@ -80,7 +80,8 @@ def from_dlpack(capsule: Any) -> Any:
 
 
 def layers_of_targets(raw: dict[str, Any], names: Iterable[str], from_dlpack: Callable[..., Any]) -> dict[str, Any]:
-    """Layers by name as GPU tensors, computed from the targets; `raw` is the result of cuda_layers()."""
+    """Layers by name as GPU tensors, computed from the targets; `raw` is the result of cuda_layers(). Without semantic_id where
+    elements have labels of their own."""
     torch = _torch()
     targets = {name: from_dlpack(target) for name, target in raw["targets"].items()}
     result = {name: targets[name] if name == "color" else targets[name].float() for name in names if name in ("color", "hdr")}
@@ -94,24 +95,46 @@ def layers_of_targets(raw: dict[str, Any], names: Iterable[str], from_dlpack: Ca
     def shown(values: Any) -> Any:
         return torch.where(seen if values.dim() == 2 else seen[..., None], values, torch.zeros_like(values))
 
+    def points() -> Any:
+        """In the camera's frame, OpenCV's axes; in double precision, as on the CPU."""
+        height, width = inverse.shape
+        steps = {"dtype": torch.float64, "device": inverse.device}
+        x = (2 * (torch.arange(width, **steps) + 0.5) / width - 1 + raw["ray_shift"][0]) * raw["ray_scale"][0]
+        y = (1 - 2 * (torch.arange(height, **steps) + 0.5) / height + raw["ray_shift"][1]) * raw["ray_scale"][1]
+        z = depth.double()
+        across, down = torch.meshgrid(x, y, indexing="xy")
+        return torch.stack([across, down, z] if raw["orthographic"] else [across * z, down * z, z], -1)
+
+    def distance() -> Any:
+        return depth if raw["orthographic"] else points().norm(dim=-1).float()
+
+    def position() -> Any:
+        return (points() @ T_world_cam[:3, :3].T + T_world_cam[:3, 3]).float()
+
+    def by_object(values: list[int]) -> Any:
+        id_ = torch.where(seen, targets["id"][..., 0], torch.zeros_like(targets["id"][..., 0])).long()
+        return torch.as_tensor(values, dtype=torch.int32, device=inverse.device)[id_]
+
     def fractions(name: str) -> Any:  # 16 bits without a sign
         return (targets[name].int() & 0xFFFF).float()
 
     def normal() -> Any:
         return _octahedral(torch, fractions("normal") / 32767.5 - 1)
 
-    turn = torch.as_tensor(raw["R_cam_world"], dtype=torch.float32, device=inverse.device)
+    T_world_cam = torch.as_tensor(raw["T_world_cam"], dtype=torch.float64, device=inverse.device)
     make = {
         "depth": lambda: depth,
+        "distance": distance,
+        "position": position,
         "normal_world": normal,
-        "normal_camera": lambda: normal() @ turn.T,
+        "normal_camera": lambda: normal() @ T_world_cam[:3, :3].float(),
         "albedo": lambda: fractions("albedo")[..., :3] / 65535,
         "metallic": lambda: targets["material"][..., 0].float() / 255,
         "roughness": lambda: targets["material"][..., 1].float() / 255,
-        "instance_id": lambda: torch.as_tensor(raw["instance_ids"], dtype=torch.int32, device=inverse.device)[
-            torch.where(seen, targets["id"][..., 0], torch.zeros_like(targets["id"][..., 0])).long()
-        ],
+        "instance_id": lambda: by_object(raw["instance_ids"]),
     }
+    if raw["semantic_ids"]:
+        make["semantic_id"] = lambda: by_object(raw["semantic_ids"])
     return result | {name: shown(make[name]()).contiguous() for name in names if name in make}
 
 

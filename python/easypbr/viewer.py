@@ -222,8 +222,9 @@ class Viewer(Sharing):
         `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids by the objects'
         names. Flow needs the `next` or `previous` frame's moment(). Without `amodal` what is hidden of the instances is
         not measured. `as_`: "numpy" or "torch", whose tensors are made on `device`: with "cuda", color, hdr, depth,
-        normals, albedo, roughness, metallic and instance_id never leave the GPU when OpenGL draws on it too (depth then has
-        the rasteriser's rounding); what else is asked for is copied there."""
+        distance, position, normals, albedo, roughness, metallic, instance_id and (without labels of elements) semantic_id never
+        leave the GPU when OpenGL draws on it too (depth, distance and position then have the rasteriser's rounding); what else
+        is asked for is copied there."""
         if isinstance(names, str):
             names = [names]
         samples = samples_of(samples)
@@ -252,8 +253,8 @@ class Viewer(Sharing):
         data = {}
         if check_device(device).type == "cuda" and stays:
             raw = _easypbr.cuda_layers(self._handle, stays, size, samples, instances_by, dict(classes or {}))
-            stays = stays if raw else []
             data = layers_of_targets(raw, stays, from_dlpack) if raw else {}
+            stays = [name for name in stays if name in data]
         else:
             stays = []
         rest = [name for name in names if name not in stays]

@@ -13,7 +13,9 @@ fake = ctypes.CDLL("libcuda.so.1")
 fake.fake_calls.restype = ctypes.c_char_p
 fake.fake_fail.argtypes = [ctypes.c_char_p]
 ONE_COPY = "allocate register map array copy wait unmap unregister"
-NAMES = ["color", "hdr", "depth", "normal_camera", "normal_world", "albedo", "roughness", "metallic", "instance_id"]
+NAMES = ["color", "hdr", "depth", "distance", "position", "normal_camera", "normal_world", "albedo", "roughness", "metallic",
+         "instance_id", "semantic_id"]
+CLASSES = {"left": 5, "right": 9}
 
 
 class Tensor(ctypes.Structure):
@@ -62,31 +64,42 @@ viewer.check_device = lambda device: tensors_device  # what a machine with a GPU
 viewer.from_dlpack = as_the_cpu_sees_it
 viewer.converter = lambda as_, device: tensors.converter(as_)
 view = make_view()
-truth = view.render_layers(NAMES, samples=1)
+truth = view.render_layers(NAMES, samples=1, classes=CLASSES)
 assert calls() == "", "nothing is asked of CUDA for layers of the CPU"
 
-layers = view.render_layers(NAMES + ["position"], samples=1, as_="torch", device="cpu:0")
+layers = view.render_layers(NAMES + ["uv"], samples=1, classes=CLASSES, as_="torch", device="cpu:0")
 log = calls()
 targets = 7  # two pictures, depth, normal, albedo, material, id
 assert log == " ".join(["retain"] + [ONE_COPY] * targets + ["free"] * targets), log
 assert fake.fake_left() == 0, "everything is given back when the tensors are"
-assert list(layers) == NAMES + ["position"]
+assert list(layers) == NAMES + ["uv"]
 for name in NAMES:
     ours = layers[name].numpy()
     assert ours.shape == truth[name].shape and ours.dtype == truth[name].dtype, name
     # The same targets; depth is the rasteriser's instead of the face's own. 1/1000 of a radian of an angle is what the
     # normal's 16 bits leave.
-    tolerance = {"depth": 1e-3, "normal_camera": 1e-6, "normal_world": 1e-6}.get(name, 1e-7)
+    tolerance = {"depth": 1e-3, "distance": 1e-3, "position": 1e-3, "normal_camera": 1e-6, "normal_world": 1e-6}.get(name, 1e-7)
     np.testing.assert_allclose(ours, truth[name], rtol=0, atol=tolerance, err_msg=name)
 assert set(np.unique(layers["instance_id"])) == {0, 1, 2}
+assert set(np.unique(layers["semantic_id"])) == {0, 5, 9}
 
-# An orthographic depth.
+# Labels of elements are looked up on the CPU.
+view.scene.get("left").L = np.arange(len(view.scene.get("left").F)) % 3
+names = ["depth", "semantic_id"]
+labelled = [view.render_layers(names, samples=1, **options) for options in ({}, {"as_": "torch", "device": "cpu:0"})]
+assert (labelled[0]["semantic_id"] == labelled[1]["semantic_id"].numpy()).all() and list(labelled[1]) == names
+assert len(np.unique(labelled[0]["semantic_id"])) > 2
+calls()
+
+# Orthographic depths and positions.
 T = view.camera.opencv_T_world_cam
 flat = view.camera
 flat.projection, flat.ortho_height = "orthographic", 2.5
 view.camera = flat
-both = [view.render_layers(["depth"], samples=1, **options)["depth"] for options in ({}, {"as_": "torch", "device": "cpu:0"})]
-np.testing.assert_allclose(both[1].numpy(), both[0], atol=1e-3)
+names = ["depth", "distance", "position"]
+both = [view.render_layers(names, samples=1, **options) for options in ({}, {"as_": "torch", "device": "cpu:0"})]
+for name in names:
+    np.testing.assert_allclose(both[1][name].numpy(), both[0][name], atol=1e-3, err_msg=name)
 calls()
 
 # A call that fails leaves nothing behind, and names itself.

@@ -20,12 +20,14 @@ std::string obstacle(const app::Drawn& drawn, const InstanceTable& table) {
 
 std::vector<std::string> targets_of(const std::vector<std::string>& layers) {
     static const std::map<std::string, std::string> targets = {
+        {"depth", "depth"},          {"distance", "depth"},      {"position", "depth"},
         {"normal_camera", "normal"}, {"normal_world", "normal"}, {"albedo", "albedo"},
-        {"roughness", "material"},   {"metallic", "material"},   {"instance_id", "id"}};
+        {"roughness", "material"},   {"metallic", "material"},   {"instance_id", "id"},
+        {"semantic_id", "id"}};
     std::vector<std::string> names;
     for (const std::string& layer : layers)
         if (const auto found = targets.find(layer); found != targets.end()) names.push_back(found->second);
-    if (!names.empty() || std::ranges::find(layers, "depth") != layers.end()) names.emplace_back("depth");
+    if (!names.empty()) names.emplace_back("depth");
     return names;
 }
 
@@ -41,9 +43,9 @@ const gl::Texture& target(const render::GBuffer& targets, const std::string& nam
 }  // namespace
 
 const std::vector<std::string>& cuda_layer_names() {
-    static const std::vector<std::string> names = {"color",         "hdr",          "depth",
-                                                   "normal_camera", "normal_world", "albedo",
-                                                   "roughness",     "metallic",     "instance_id"};
+    static const std::vector<std::string> names = {
+        "color",        "hdr",    "depth",     "distance", "position",    "normal_camera",
+        "normal_world", "albedo", "roughness", "metallic", "instance_id", "semantic_id"};
     return names;
 }
 
@@ -77,10 +79,18 @@ std::optional<CudaLayers> cuda_layers(app::Session& session, const std::vector<s
     result.near = now.camera.near;
     result.far = now.camera.far;
     result.orthographic = now.camera.projection == Projection::orthographic;
-    result.R_cam_world = now.camera.opencv_T_world_cam().topLeftCorner<3, 3>().transpose().cast<float>();
+    result.rays = ray_slopes(now.camera, drawn->targets().size());
+    result.T_world_cam = now.camera.opencv_T_world_cam();
     result.instance_ids.push_back(0);
-    for (size_t i = 0; i < now.scene.objects.size(); ++i)
-        result.instance_ids.push_back(table.instances()[table.of(i, 0)].id);
+    result.semantic_ids.push_back(0);
+    bool has_labels = false;
+    for (size_t i = 0; i < now.scene.objects.size(); ++i) {
+        const Instance& instance = table.instances()[table.of(i, 0)];
+        result.instance_ids.push_back(instance.id);
+        result.semantic_ids.push_back(instance.semantic_id);
+        has_labels |= !now.scene.objects[i].mesh->L.empty();
+    }
+    if (has_labels) result.semantic_ids.clear();
     return result;
 }
 

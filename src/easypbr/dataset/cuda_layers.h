@@ -8,6 +8,7 @@
 
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/instances.h"
+#include "easypbr/dataset/surfaces.h"
 #include "easypbr/gl/cuda.h"
 
 namespace easypbr::dataset {
@@ -19,11 +20,14 @@ struct CudaLayers {
     std::map<std::string, gl::CudaPixels> targets;
     double near = 0, far = 0;
     bool orthographic = false;
-    Mat3 R_cam_world;               ///< OpenCV's axes
+    RaySlopes rays;
+    Mat4d T_world_cam;              ///< OpenCV's axes
     std::vector<int> instance_ids;  ///< by what the target "id" holds; 0 for nothing
+    std::vector<int> semantic_ids;  ///< the same; empty where elements have labels of their own
 };
 
-/// color, hdr, depth, normal_camera, normal_world, albedo, roughness, metallic, instance_id.
+/// color, hdr, depth, distance, position, normal_camera, normal_world, albedo, roughness, metallic,
+/// instance_id, semantic_id.
 const std::vector<std::string>& cuda_layer_names();
 
 /// Draws what the session shows and copies the targets that the layers (some of cuda_layer_names()) are made

@@ -25,15 +25,11 @@ Ray ray_of(const Surfaces& s, size_t pixel) {
 std::vector<Vec2> slopes_of(const Camera& camera, Vec2i size, const app::LensMap& lens) {
     if (!lens.is_identity()) return lens.slopes;
     std::vector<Vec2> slopes(size_t(size.x()) * size_t(size.y()));
-    // Of the device's coordinates, x to the right and y upwards.
-    const Mat4d P = camera.projection_matrix(double(size.x()) / size.y());
-    const bool orthographic = camera.projection == Projection::orthographic;
-    const Vec2d shift = orthographic ? Vec2d(-P(0, 3), -P(1, 3)) : Vec2d(P(0, 2), P(1, 2));
+    const RaySlopes rays = ray_slopes(camera, size);
     parallel_for(size_t(size.y()), 16, [&](size_t row) {
         for (int x = 0; x < size.x(); ++x) {
             const Vec2d ndc(2 * (x + 0.5) / size.x() - 1, 1 - 2 * (double(row) + 0.5) / size.y());
-            slopes[row * size_t(size.x()) + size_t(x)] =
-                Vec2d((ndc.x() + shift.x()) / P(0, 0), -(ndc.y() + shift.y()) / P(1, 1)).cast<float>();
+            slopes[row * size_t(size.x()) + size_t(x)] = rays.at(ndc);
         }
     });
     return slopes;
@@ -69,6 +65,13 @@ void meet_face(Surfaces& s, size_t pixel, const Eigen::Affine3d& T_cv_mesh, doub
 }
 
 }  // namespace
+
+RaySlopes ray_slopes(const Camera& camera, Vec2i size) {
+    const Mat4d P = camera.projection_matrix(double(size.x()) / size.y());
+    const bool orthographic = camera.projection == Projection::orthographic;
+    return {orthographic ? Vec2d(-P(0, 3), -P(1, 3)) : Vec2d(P(0, 2), P(1, 2)),
+            Vec2d(1 / P(0, 0), -1 / P(1, 1))};
+}
 
 Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& object) {
     return Eigen::Affine3d(camera.opencv_T_world_cam()).inverse(Eigen::Isometry) * object.T_world_mesh;

@@ -26,6 +26,15 @@ struct Surfaces {
     size_t element_of(size_t pixel) const { return element[pixel] - 1; }
 };
 
+/// The rays through places of the device's coordinates, x to the right and y upwards, without a lens:
+/// (place + shift) * scale are x/z and y/z in the camera's frame (OpenCV's axes); for orthographic cameras x
+/// and y.
+struct RaySlopes {
+    Vec2d shift, scale;
+    Vec2 at(const Vec2d& place) const { return ((place + shift).cwiseProduct(scale)).cast<float>(); }
+};
+RaySlopes ray_slopes(const Camera& camera, Vec2i size);
+
 /// From the camera's frame (OpenCV's axes) to the frame of an object's V.
 Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& object);
 

@@ -129,8 +129,11 @@ nb::object cuda_layers(SharedViewer& self, const std::vector<std::string>& layer
     result["near"] = found->near;
     result["far"] = found->far;
     result["orthographic"] = found->orthographic;
-    result["R_cam_world"] = matrix_to_numpy(found->R_cam_world.cast<double>());
+    result["ray_shift"] = nb::make_tuple(found->rays.shift.x(), found->rays.shift.y());
+    result["ray_scale"] = nb::make_tuple(found->rays.scale.x(), found->rays.scale.y());
+    result["T_world_cam"] = matrix_to_numpy(found->T_world_cam);
     result["instance_ids"] = found->instance_ids;
+    result["semantic_ids"] = found->semantic_ids;
     return result;
 }
 
