@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Steps of gpu_check.sh that draw. Exit status 77: left out, the last line says why.
 
-usage: gpu_steps.py golden|cuda|recording|textures|splats|bench FOLDER [SIZE]
-SIZE: pixels along the texture's side, by default 4096; the video's width, by default 320; millions of the
+usage: gpu_steps.py golden|cuda|recording|frames|tests_python|textures|splats|bench FOLDER [SIZE]
+SIZE: pixels along the texture's side, by default 4096; the video's or frames' width, by default 320; millions of the
 bench's faces, by default 1; thousands of splats, by default 20.
 """
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -95,6 +96,49 @@ def recording(folder: pathlib.Path, width: int) -> int:
     return 1 if failed else 0
 
 
+def frames(_folder: pathlib.Path, size: int) -> int:
+    """Frames of a moving camera as numpy arrays, by OpenGL and by the CPU: what programs see of both."""
+    size = size or 320
+    scene = Scene()
+    scene.show(shapes.sphere(1.0, 640))
+    for device in ("gl", "cpu"):
+        view = Viewer((size, size * 9 // 16), scene=scene, device=device)
+        for name, settings in (("frames", {}), ("without shadows", {"shadows.enabled": False})):
+            for key, value in settings.items():
+                view.settings[key] = value
+            view.render(samples=1)
+            seconds = []
+            for _ in range(FRAMES):
+                view.settings["camera.azimuth_deg"] = view.settings["camera.azimuth_deg"] + 1
+                start = time.perf_counter()
+                view.render(samples=1)
+                seconds.append(time.perf_counter() - start)
+            print(f"{device}, {name}: {1000 * sorted(seconds)[FRAMES // 2]:.2f} ms, {size} pixels wide")
+    return 0
+
+
+def tests_python(folder: pathlib.Path, _: int) -> int:
+    """The tests of the Python package, each file in a process of its own, which has its own context."""
+
+    def run(path: pathlib.Path) -> tuple[str, bool, list[str]]:
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", path]
+        with open(folder / f"{path.stem}.txt", "w+") as log:
+            try:
+                status = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, timeout=150, check=False).returncode
+            except subprocess.TimeoutExpired:
+                return path.stem, False, ["more than 150 s"]
+            log.seek(0)
+            return path.stem, status == 0, [line.rstrip() for line in log if line.startswith(("FAILED", "ERROR"))]
+
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        done = list(pool.map(run, sorted((ROOT / "tests/python").glob("test_*.py"))))
+    for name, passed, lines in done:
+        if not passed:
+            print(name, *lines, sep="\n  ")
+    print(f"{sum(passed for _, passed, _ in done)} of {len(done)} files pass")
+    return 0 if all(passed for _, passed, _ in done) else 1
+
+
 def textures(folder: pathlib.Path, size: int) -> int:
     """A texture of 16384 x 16384 pixels with alpha is 1 GiB: its two halves must be seen where they are."""
     size = size or 4096
@@ -165,7 +209,7 @@ def bench(folder: pathlib.Path, millions: int) -> int:
     return 0
 
 
-STEPS = {step.__name__: step for step in (golden, cuda, recording, textures, splats, bench)}
+STEPS = {step.__name__: step for step in (golden, cuda, recording, frames, tests_python, textures, splats, bench)}
 
 if __name__ == "__main__":
     if len(sys.argv) < 3 or sys.argv[1] not in STEPS:
