@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -26,6 +27,45 @@ TEST(Context, SaysWhatItIs) {
     EXPECT_GE(context->info().max_texture_size, 16384);
     ASSERT_FALSE(context->info().attempts.empty());
     EXPECT_EQ(context->info().attempts.back().error, "");
+}
+
+/// Sets a variable of the environment for as long as it lives.
+class EnvironmentVariable {
+  public:
+    EnvironmentVariable(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
+    EnvironmentVariable(const EnvironmentVariable&) = delete;
+    EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
+    ~EnvironmentVariable() { ::unsetenv(name_); }
+
+  private:
+    const char* name_;
+};
+
+// The one of several GPUs that is asked for; llvmpipe is an EGL device too.
+TEST(Context, IsOnTheEglDeviceThatIsAskedFor) {
+    {
+        const EnvironmentVariable number("EASYPBR_EGL_DEVICE", "0");
+        const auto context = Context::create();
+        EXPECT_EQ(context->info().device, DrawDevice::gl);
+        ASSERT_EQ(context->info().attempts.size(), 1u);
+        EXPECT_EQ(context->info().platform, "EGL device 0");
+    }
+    const auto error_of = [](const char* value) -> std::string {
+        const EnvironmentVariable number("EASYPBR_EGL_DEVICE", value);
+        try {
+            Context::create();
+        } catch (const ContextError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(error_of("31").find("there is no EGL device 31: there are "), std::string::npos);
+    for (const char* wrong : {"first", "-1", "0x", "1 "})
+        EXPECT_NE(error_of(wrong).find("expected the number of an EGL device, from 0 on, got '"),
+                  std::string::npos)
+            << wrong;
+    const EnvironmentVariable number("EASYPBR_EGL_DEVICE", "31");
+    EXPECT_EQ(Context::create(DrawDevice::cpu)->info().device, DrawDevice::cpu);
 }
 
 TEST(Context, OfTheCpuLoadsTheDriverWhenItIsNeeded) {

@@ -7,8 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "easypbr/core/error.h"
@@ -20,6 +23,8 @@ namespace easypbr::gl {
 namespace {
 
 thread_local Context* current_context = nullptr;
+
+constexpr int most_devices = 32;
 
 /// A display worth trying, by the name a person knows it under.
 struct Candidate {
@@ -63,12 +68,25 @@ void require_libraries() {
             "no OpenGL context: neither libOpenGL.so.0 nor libGL.so.1 is installed. Install 'libopengl0'");
 }
 
+/// The number of the one EGL device that the environment asks for.
+std::optional<int> device_by_number() {
+    const char* text = std::getenv("EASYPBR_EGL_DEVICE");
+    if (!text || !*text) return std::nullopt;
+    int number = 0;
+    const char* end = text + std::strlen(text);
+    const auto [stop, error] = std::from_chars(text, end, number);
+    if (error != std::errc() || stop != end || number < 0)
+        throw ContextError(fmt::format(
+            "EASYPBR_EGL_DEVICE: expected the number of an EGL device, from 0 on, got '{}'", text));
+    return number;
+}
+
 std::vector<Candidate> device_candidates(const char* client_extensions) {
     std::vector<Candidate> hardware, software;
     if (!has_extension(client_extensions, "EGL_EXT_platform_device")) return {};
-    EGLDeviceEXT devices[32];
+    EGLDeviceEXT devices[most_devices];
     EGLint count = 0;
-    if (!eglQueryDevicesEXT(32, devices, &count)) return {};
+    if (!eglQueryDevicesEXT(most_devices, devices, &count)) return {};
     for (int i = 0; i < count; ++i) {
         const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
         const bool is_software = has_extension(extensions, "EGL_MESA_device_software");
@@ -80,8 +98,22 @@ std::vector<Candidate> device_candidates(const char* client_extensions) {
     return hardware;
 }
 
+Candidate numbered_candidate(const char* client_extensions, int number) {
+    EGLDeviceEXT devices[most_devices];
+    EGLint count = 0;
+    if (has_extension(client_extensions, "EGL_EXT_platform_device"))
+        eglQueryDevicesEXT(most_devices, devices, &count);
+    if (number >= count)
+        throw ContextError(
+            fmt::format("EASYPBR_EGL_DEVICE: there is no EGL device {}: there are {}", number, count));
+    return {fmt::format("EGL device {}", number),
+            eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[number], nullptr)};
+}
+
 std::vector<Candidate> candidates() {
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (const std::optional<int> number = device_by_number())
+        return {numbered_candidate(extensions, *number)};
     std::vector<Candidate> found = device_candidates(extensions);
     if (has_extension(extensions, "EGL_MESA_platform_surfaceless"))
         found.push_back({"EGL surfaceless", eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA,
@@ -198,6 +230,7 @@ std::unique_ptr<Context> Context::create(DrawDevice device) {
         throw ContextError(
             "this process was forked from one that had already drawn: start workers with 'spawn' instead");
     if (device == DrawDevice::automatic) device = device_by_environment();
+    if (device == DrawDevice::automatic && device_by_number()) device = DrawDevice::gl;
     const bool asked = device != DrawDevice::automatic;
     if (!asked) device = has_gpu_files() ? DrawDevice::gl : DrawDevice::cpu;
     std::unique_ptr<Context> made(new Context);
