@@ -1,9 +1,14 @@
 """The metallic-roughness material of glTF 2.0 (Appendix B) as a BSDF of Mitsuba 3, as the renderers that are compared have it.
 
-Mitsuba's variant must be set before this is imported.
+Mitsuba's variant must be set before this is imported. As a program it prints the part of an even light that squares reflect, as
+Mitsuba finds it and by a sum over the hemisphere, of the formulas written once more.
 """
 import drjit as dr
 import mitsuba as mi
+import numpy as np
+
+if __name__ == "__main__":
+    mi.set_variant("llvm_ad_rgb")
 
 F0 = 0.04  # of dielectrics of index 1.5
 
@@ -73,3 +78,38 @@ class GltfBsdf(mi.BSDF):
 
     def to_string(self):
         return f"GltfBsdf[metallic={self.metallic}, alpha={self.alpha}]"
+
+
+def rendered_albedo(color, metallic, roughness, angle):
+    eye = [0, 10 * np.sin(angle), 10 * np.cos(angle)]
+    to_world = mi.ScalarTransform4f().look_at(origin=eye, target=[0, 0, 0], up=[0, 1, 0.01])
+    bsdf = {"type": "gltf", "base_color": {"type": "rgb", "value": [color] * 3}, "metallic": metallic, "roughness": roughness}
+    film = {"type": "hdrfilm", "width": 8, "height": 8, "rfilter": {"type": "box"}}
+    scene = mi.load_dict({"type": "scene", "integrator": {"type": "path", "max_depth": 2}, "light": {"type": "constant"},
+                          "sensor": {"type": "perspective", "fov": 1, "to_world": to_world, "film": film},
+                          "square": {"type": "rectangle", "bsdf": bsdf}})
+    return np.array(mi.render(scene, spp=4096))[..., :3].mean()
+
+
+def summed_albedo(color, metallic, roughness, angle, steps=1000):
+    z, phi = np.meshgrid((np.arange(steps) + 0.5) / steps, (np.arange(steps) + 0.5) / steps * 2 * np.pi)
+    out = np.stack([np.sqrt(1 - z * z) * np.cos(phi), np.sqrt(1 - z * z) * np.sin(phi), z], -1)
+    eye = np.array([np.sin(angle), 0, np.cos(angle)])
+    half = (out + eye) / np.linalg.norm(out + eye, axis=-1, keepdims=True)
+    a2, i = roughness**4, eye[2]
+    lobe = a2 / np.pi / (half[..., 2] ** 2 * (a2 - 1) + 1) ** 2 * 0.5
+    lobe /= z * np.sqrt(i * i * (1 - a2) + a2) + i * np.sqrt(z * z * (1 - a2) + a2)
+    grazing = (1 - half @ eye) ** 5
+    fresnel = 0.04 + 0.96 * grazing
+    f = lobe * (color + (1 - color) * grazing) if metallic else color / np.pi * (1 - fresnel) + lobe * fresnel
+    return (f * z).mean() * 2 * np.pi
+
+
+def main():
+    mi.register_bsdf("gltf", GltfBsdf)
+    for case in ((0.5, 1.0, 0.2, 0.3), (0.5, 1.0, 0.5, 1.0), (0.5, 0.0, 0.3, 0.3), (0.5, 0.0, 0.3, 1.2), (0.5, 0.0, 0.6, 0.8)):
+        print("colour {}, metallic {}, roughness {}, angle {}:".format(*case), f"{rendered_albedo(*case):.4f}, {summed_albedo(*case):.4f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -34,7 +34,7 @@ def write_png(path, picture):
 
 
 def compare(folder, name, setup, keep):
-    """A row of the table, and in words what was nearest."""
+    """A row of the table, in words what was nearest, and EasyPBR's number."""
     halves = np.load(folder / f"reference {name}.npy")
     reference, *parts = (light_scenes.displayed(picture, setup.exposure) for picture in (halves.mean(0), *halves))
     found = {"EasyPBR": nearest(reference, np.load(folder / f"default {name}.npy", allow_pickle=True).item(), [1.0])}
@@ -45,7 +45,7 @@ def compare(folder, name, setup, keep):
             write_png(keep / f"{name}, {program}.png", picture)
     cells = " | ".join(f"{best[0]:.3f}" for best in found.values())
     words = "; ".join(f"{program}: {how}, exposure {exposure:.2f}" for program, (_, exposure, how, _) in list(found.items())[1:])
-    return f"| {name} | {cells} | {light.flip(*parts):.3f} |", f"{name}: {words}"
+    return f"| {name} | {cells} | {light.flip(*parts):.3f} |", f"{name}: {words}", found["EasyPBR"][0]
 
 
 def main():
@@ -66,11 +66,13 @@ def main():
         for file in PEERS.values():
             light.run(".venv-bench", f"light_{file}.py", work)
         print(f"| scene | EasyPBR | {' | '.join(PEERS)} | FLIP between halves of the reference |\n|---|---|---|---|---|---|")
-        drawn_with = []
+        drawn_with, ours = [], []
         for name, setup in light_scenes.read_all(work).items():
-            row, words = compare(work, name, setup, chosen.keep)
+            row, words, flip = compare(work, name, setup, chosen.keep)
             print(row, flush=True)
             drawn_with.append(words)
+            ours.append(flip)
+        print(f"| mean of {len(ours)} | {np.mean(ours):.3f} |")
         print("\n" + "\n".join(drawn_with))
 
 

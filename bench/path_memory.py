@@ -3,7 +3,8 @@
 
 usage: path_memory.py [WIDTHxHEIGHT]            default 1920x1080
 
-With the denoiser oidn too where the package pyoidn is installed. Each picture is drawn by a process of its own; what one of 64x36 takes is subtracted.
+With the denoiser oidn too where the package pyoidn is installed. Each picture is drawn by a process of its own; what one of
+64x36 takes is subtracted.
 """
 import importlib.util
 import re

@@ -48,7 +48,7 @@ TEST(Context, IsOnTheEglDeviceThatIsAskedFor) {
         const auto context = Context::create();
         EXPECT_EQ(context->info().device, DrawDevice::gl);
         ASSERT_EQ(context->info().attempts.size(), 1u);
-        EXPECT_EQ(context->info().platform, "EGL device 0");
+        EXPECT_EQ(context->info().platform.substr(0, 12), "EGL device 0");
     }
     const auto error_of = [](const char* value) -> std::string {
         const EnvironmentVariable number("EASYPBR_EGL_DEVICE", value);

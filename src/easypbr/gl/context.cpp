@@ -24,8 +24,6 @@ namespace {
 
 thread_local Context* current_context = nullptr;
 
-constexpr int most_devices = 32;
-
 /// A display worth trying, by the name a person knows it under.
 struct Candidate {
     std::string what;
@@ -81,13 +79,26 @@ std::optional<int> device_by_number() {
     return number;
 }
 
+/// In EGL's order.
+std::vector<EGLDeviceEXT> egl_devices(const char* client_extensions) {
+    std::vector<EGLDeviceEXT> devices(32);
+    EGLint count = 0;
+    if (!has_extension(client_extensions, "EGL_EXT_platform_device") ||
+        !eglQueryDevicesEXT(EGLint(devices.size()), devices.data(), &count))
+        count = 0;
+    devices.resize(size_t(count));
+    return devices;
+}
+
 std::vector<Candidate> device_candidates(const char* client_extensions) {
     std::vector<Candidate> hardware, software;
-    if (!has_extension(client_extensions, "EGL_EXT_platform_device")) return {};
-    EGLDeviceEXT devices[most_devices];
-    EGLint count = 0;
-    if (!eglQueryDevicesEXT(most_devices, devices, &count)) return {};
-    for (int i = 0; i < count; ++i) {
+    const std::vector<EGLDeviceEXT> devices = egl_devices(client_extensions);
+    const std::optional<int> asked = device_by_number();
+    if (asked && size_t(*asked) >= devices.size())
+        throw ContextError(fmt::format("EASYPBR_EGL_DEVICE: there is no EGL device {}: there are {}", *asked,
+                                       devices.size()));
+    for (size_t i = 0; i < devices.size(); ++i) {
+        if (asked && i != size_t(*asked)) continue;
         const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
         const bool is_software = has_extension(extensions, "EGL_MESA_device_software");
         Candidate candidate{fmt::format("EGL device {}{}", i, is_software ? " (software)" : "")};
@@ -98,23 +109,10 @@ std::vector<Candidate> device_candidates(const char* client_extensions) {
     return hardware;
 }
 
-Candidate numbered_candidate(const char* client_extensions, int number) {
-    EGLDeviceEXT devices[most_devices];
-    EGLint count = 0;
-    if (has_extension(client_extensions, "EGL_EXT_platform_device"))
-        eglQueryDevicesEXT(most_devices, devices, &count);
-    if (number >= count)
-        throw ContextError(
-            fmt::format("EASYPBR_EGL_DEVICE: there is no EGL device {}: there are {}", number, count));
-    return {fmt::format("EGL device {}", number),
-            eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[number], nullptr)};
-}
-
 std::vector<Candidate> candidates() {
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    if (const std::optional<int> number = device_by_number())
-        return {numbered_candidate(extensions, *number)};
     std::vector<Candidate> found = device_candidates(extensions);
+    if (device_by_number()) return found;
     if (has_extension(extensions, "EGL_MESA_platform_surfaceless"))
         found.push_back({"EGL surfaceless", eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA,
                                                                      EGL_DEFAULT_DISPLAY, nullptr)});
