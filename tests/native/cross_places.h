@@ -116,6 +116,34 @@ inline void check_points(const Kernels& kernels) {
     });
 }
 
+inline void check_surfels(const Kernels& kernels) {
+    constexpr int count = 199;
+    all_sets("set_up_surfels", [&](Case& run) {
+        SurfelView view{.axial = {0, 0, -1, 3},
+                        .eye = {0, 0, 3},
+                        .towards_viewer = {0, 0, 1},
+                        .orthographic = run.set % 3 == 0,
+                        .width = 640,
+                        .height = 480,
+                        .near = 0.1f,
+                        .normal_from_mesh = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
+                        .world_from_mesh = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
+        set_view(view.clip_from_mesh);
+        const SurfelBatch batch{
+            .vectors = run.floats(SurfelBatch::components * count + stream_alignment, -0.4f, 0.4f),
+            .count = count,
+            .view = &view};
+        auto* kept = run.output<int32_t>(1 + count, Kind::bits);
+        auto* ellipses = run.output<float>(count * int(SurfelEllipse<float>::members), Kind::floats);
+        SurfelScreen screen;
+        kept[0] = kernels.set_up_surfels(batch, screen);
+        for (int i = 0; i < kept[0]; ++i) {
+            kept[1 + i] = screen.kept[i];
+            for (const auto& member : screen.ellipses) *ellipses++ = member[screen.kept[i]];
+        }
+    });
+}
+
 inline void check_paths(const Kernels& kernels) {
     constexpr int count = 203, room = count + stream_alignment;
     all_sets("sample_paths", [&](Case& run) {
@@ -143,9 +171,8 @@ inline void check_pixels(const Kernels& kernels) {
             rows[size_t(i)] = i / 16;
         }
         const auto bits = [&] { return run.filled<uint32_t>(room, [&] { return run.random.bits(); }); };
-        const PixelSurfaces pixels{columns.data(), rows.data(), run.floats(room, 0.01f, 0.9f),
-                                   bits(),         bits(),      bits(),
-                                   bits()};
+        const PixelSurfaces pixels{columns.data(), rows.data(), run.floats(room, 0.01f, 0.9f), bits(), bits(),
+                                   bits(),         bits()};
         CameraPlaces to;
         std::vector<float*> outputs;
         const auto output = [&](float*& values) {
@@ -204,7 +231,8 @@ inline void check_noisy_rows(const Kernels& kernels) {
         }
         constexpr size_t floats = offsetof(NoisyTile, frames), rest = sizeof tile - floats;
         std::memcpy(run.output<float>(floats / sizeof(float), Kind::floats), &tile, floats);
-        std::memcpy(run.output<uint8_t>(rest, Kind::bits), reinterpret_cast<const char*>(&tile) + floats, rest);
+        std::memcpy(run.output<uint8_t>(rest, Kind::bits), reinterpret_cast<const char*>(&tile) + floats,
+                    rest);
     });
 }
 

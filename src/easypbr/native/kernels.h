@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "easypbr/native/surfel_ellipse.h"
 #include "easypbr/native/views.h"
 #include "native/shader_list.h"
 
@@ -266,6 +267,24 @@ struct PointScreen {
     uint16_t kept[room];  ///< those inside of what is drawn, in their order
 };
 
+/// Surfels that are neighbours, on their way to the screen.
+struct SurfelBatch {
+    static constexpr int most_surfels = 256;
+    static constexpr int components = 12;
+
+    const float* vectors = nullptr;  ///< all x of SurfelVectors::p, all y, ... all z of n
+    int count = 0;
+    const SurfelView* view = nullptr;
+};
+
+/// The surfels on the screen. Lanes beyond the last are written.
+struct SurfelScreen {
+    static constexpr int room = SurfelBatch::most_surfels + 16;
+
+    alignas(64) float ellipses[SurfelEllipse<float>::members][room];  ///< in the order of all()
+    uint16_t kept[room];                                              ///< those that are seen, in their order
+};
+
 /// Random numbers of `count` paths and at most stream_alignment - 1 more, in [0, 1): a point of a dimension
 /// for each (native/sample_points.h).
 using SamplePaths = void (*)(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension,
@@ -330,10 +349,10 @@ static_assert(sizeof(NoisyTile) == 41 * NoisyTile::pixels, "there is one for eac
 struct NoisyRow {
     static constexpr int pixels = NoisyTile::side;
 
-    const float* sample = nullptr;                                        ///< r g b a
-    const uint32_t *normal = nullptr, *material = nullptr;                ///< as in the targets
-    const uint64_t* albedo = nullptr;                                     ///< likewise
-    const float *depth = nullptr, *open = nullptr;                        ///< open: what overlays leave; null: all
+    const float* sample = nullptr;                          ///< r g b a
+    const uint32_t *normal = nullptr, *material = nullptr;  ///< as in the targets
+    const uint64_t* albedo = nullptr;                       ///< likewise
+    const float *depth = nullptr, *open = nullptr;          ///< open: what overlays leave; null: all
     int end_of_lit = 0, catcher = 0;  ///< codes of surfaces: light falls on those below the first
     bool orthographic = false;
     bool over_nothing = false;  ///< of shadow catchers the coverage is noisy
@@ -383,6 +402,8 @@ using ChancesOfEmitters = void (*)(const FewEmitters& emitters, const float* con
 
 /// The number of points that are kept.
 using SetUpPoints = int (*)(const PointBatch& points, PointScreen& screen);
+/// The number of surfels that are kept.
+using SetUpSurfels = int (*)(const SurfelBatch& surfels, SurfelScreen& screen);
 
 /// The number of faces that are kept; negative where a vertex would have to be clipped, or the cluster is
 /// 128 pixels large.
@@ -409,6 +430,7 @@ struct Kernels {
     BlendSplats blend_splats;
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
+    SetUpSurfels set_up_surfels;
     AddNoisyRow add_noisy_row;
     FindMapPlaces find_map_places;
     FindMapDirections find_map_directions;

@@ -86,6 +86,9 @@ int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 /// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.
 int set_up_points(const PointBatch& points, PointScreen& screen);
 
+/// Projects the surfels of a batch and finds which are seen, as project_surfel(). On the calling thread.
+int set_up_surfels(const SurfelBatch& surfels, SurfelScreen& screen);
+
 /// Places in equirectangular maps and directions, as FindMapPlaces and FindMapDirections. On the calling
 /// thread.
 void find_map_places(const float (&rotation)[3][3], const float* const (&directions)[3], int count, float* u,

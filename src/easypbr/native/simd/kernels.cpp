@@ -39,6 +39,7 @@ struct Fragment : TextureReader {
 #include "easypbr/native/simd/sample_emitters.h"
 #include "easypbr/native/simd/sample_paths.h"
 #include "easypbr/native/simd/shade_hits.h"
+#include "easypbr/native/simd/surfel_setup.h"
 
 namespace easypbr::native::EASYPBR_ISA {
 namespace {
@@ -332,6 +333,7 @@ const Kernels kernels{resolve_triangles,
                       blend_splats,
                       set_up_cluster,
                       set_up_points,
+                      set_up_surfels,
                       add_noisy_row,
                       find_map_places,
                       find_map_directions,

@@ -39,12 +39,4 @@ int PointBatches::size_of(size_t batch) const {
     return int(std::min(most, ids_.size() - most * batch));
 }
 
-const PointBatches* BatchedClouds::draw(const Array3f& V) {
-    if (V.rows() < small_cloud) return nullptr;
-    Entry& entry = entries_.get(V.revision(), [] { return Entry(); });
-    if (++entry.draws == 2)
-        entry.batches = std::make_unique<BackgroundValue<PointBatches>>([V] { return PointBatches(V); });
-    return entry.batches ? entry.batches->get() : nullptr;
-}
-
 }  // namespace easypbr::render

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "easypbr/core/background.h"
 #include "easypbr/core/math.h"
-#include "easypbr/core/revision_cache.h"
 #include "easypbr/native/kernels.h"
+#include "easypbr/render/raster/batch_cache.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
@@ -43,19 +41,17 @@ class PointBatches {
 /// The batches of clouds, by the revision of their points.
 class BatchedClouds {
   public:
-    /// Takes note that a cloud is drawn. Its batches begin to be made when it is drawn for the second
-    /// time: a single picture would not earn them back. Null until there are any.
-    const PointBatches* draw(const Array3f& V);
-    void evict_unused() { entries_.evict_unused(); }
+    const PointBatches* draw(const Array3f& V) {
+        if (V.rows() < small_cloud) return nullptr;
+        return batches_.draw(V.revision(), [V] { return PointBatches(V); });
+    }
+    void evict_unused() { batches_.evict_unused(); }
 
   private:
     /// Points that are drawn in a millisecond.
     static constexpr Eigen::Index small_cloud = 1 << 15;
-    struct Entry {
-        int draws = 0;
-        std::unique_ptr<BackgroundValue<PointBatches>> batches;
-    };
-    RevisionCache<uint64_t, Entry> entries_;
+
+    BatchCache<uint64_t, PointBatches> batches_;
 };
 
 }  // namespace easypbr::render

@@ -24,6 +24,20 @@ std::span<const uint64_t> entries_of_source(std::span<const uint64_t> entries, s
     return {begin, end};
 }
 
+/// Of an entry; null where its item shows none.
+const float* color_of(const std::vector<SurfelSource>& sources, uint64_t entry) {
+    const SurfelSource& source = sources[source_of(entry)];
+    if (!source.item->with_colors) return nullptr;
+    const auto& C = source.item->mesh().C;
+    return C.data() + source.projector.vertex_of(surfel_of(entry)) * size_t(C.cols());
+}
+
+/// An entry with the vertex in the surfel's place: the same whether there are batches or not.
+uint64_t vertex_entry(const std::vector<SurfelSource>& sources, uint64_t entry) {
+    const size_t source = source_of(entry);
+    return uint64_t(source) << 32 | sources[source].projector.vertex_of(surfel_of(entry));
+}
+
 }  // namespace
 
 namespace {
@@ -69,12 +83,11 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
         const auto is_drawn = item.alpha == AlphaMode::mask ? drawn_vertices(item) : nullptr;
         tile_of[k].assign(size_t(item.mesh().V.rows()), no_tile);
         if (keeps) kept_[k].resize(tile_of[k].size());
-        parallel_for(tile_of[k].size(), binning_grain, [&](size_t i) {
-            if (is_drawn && !is_drawn(i)) return;
-            const auto s = sources[k].projector.project(Eigen::Index(i));
-            if (!s) return;
-            if (keeps) kept_[k][i] = *s;
-            const TileRange range(*s, tiles);
+        const SurfelProjector& projector = sources[k].projector;
+        projector.project_all([&](size_t i, const SurfelProjection& s) {
+            if (is_drawn && !is_drawn(projector.vertex_of(i))) return;
+            if (keeps) kept_[k][i] = s;
+            const TileRange range(s, tiles);
             for_each_tile(range, [&](size_t tile) {
                 next_in(tile);
                 tile_of[k][i] = range.count() == 1 ? uint32_t(tile) : several_tiles;
@@ -95,9 +108,8 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
             if (tile != several_tiles)
                 entries_[next_in(tile)] = entry;
             else
-                for_each_tile(
-                    TileRange(keeps ? kept_[k][i] : *sources[k].projector.project(Eigen::Index(i)), tiles),
-                    [&](size_t several) { entries_[next_in(several)] = entry; });
+                for_each_tile(TileRange(keeps ? kept_[k][i] : *sources[k].projector.project(i), tiles),
+                              [&](size_t several) { entries_[next_in(several)] = entry; });
         });
 }
 
@@ -117,27 +129,31 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
     std::vector<uint32_t>& seen = t.seen;
     seen.clear();
     for (size_t k = 0; k < entries.size(); ++k) {
-        const uint64_t entry = entries[k];
+        const uint64_t vertex = vertex_entry(sources, entries[k]);
         const SurfelProjection& s = t.projections[k];
         bool may_be_seen = false;
         t.for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
             const float pushed = hit.z + s.band;
             if (hit.z > t.hidden[i]) return;
             may_be_seen |= hit.z <= t.limit[i];
-            if (pushed > t.limit[i] || (pushed == t.limit[i] && entry > t.nearest[i])) return;
+            if (pushed > t.limit[i] || (pushed == t.limit[i] && vertex > t.nearest[i])) return;
             t.limit[i] = pushed;
-            t.nearest[i] = entry;
+            t.nearest[i] = vertex;
         });
         if (may_be_seen) seen.push_back(uint32_t(k));
     }
-    for (const uint32_t k : seen)
-        t.add<false>(sources[entries[k] >> 32], surfel_of(entries[k]), t.projections[k],
+    for (size_t n = 0; n < seen.size(); ++n) {
+        if (n + SurfelTile::ahead < seen.size())
+            __builtin_prefetch(color_of(sources, entries[seen[n + SurfelTile::ahead]]));
+        const uint32_t k = seen[n];
+        t.add<false>(sources[source_of(entries[k])], surfel_of(entries[k]), t.projections[k],
                      [&](size_t i, const SurfelProjection::Hit& hit) {
                          return hit.z <= t.hidden[i] && hit.z <= t.limit[i];
                      });
+    }
     t.for_all([&](int x, int y, size_t i) {
         if (t.sums[i][SurfelTile::weight] == 0) return;
-        SurfacePixel pixel = t.mean(frame, *sources[t.nearest[i] >> 32].item, i);
+        SurfacePixel pixel = t.mean(frame, *sources[source_of(t.nearest[i])].item, i);
         pixel.element = uint32_t(t.nearest[i]);
         // The mean may lie behind what hides some of the surfels.
         const size_t to = writer.index(x, y);

@@ -28,7 +28,7 @@ class SoftwareSurfels {
                    SurfaceWriter& writer);
 
   private:
-    /// Surfels whose projections are kept in a frame: 105 MB.
+    /// Surfels whose projections are kept in a frame: 92 MB.
     static constexpr size_t most_kept = size_t(1) << 20;
 
     void bin(const std::vector<SurfelSource>& sources, Vec2i frame);

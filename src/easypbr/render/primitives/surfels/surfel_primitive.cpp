@@ -22,7 +22,7 @@ void SurfelPrimitive::draw(const Frame& frame, DrawItems items, const GBuffer& t
 std::vector<SurfelSource> SurfelPrimitive::sources_of(const Frame& frame, DrawItems items) {
     std::vector<SurfelSource> sources;
     for (const DrawItem& item : items)
-        sources.push_back({&item, SurfelProjector(item, frame, splats_.spacing_of(item))});
+        sources.push_back({&item, SurfelProjector(item, frame, splats_.spacing_of(item), batches_)});
     return sources;
 }
 

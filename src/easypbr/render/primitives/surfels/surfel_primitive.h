@@ -24,11 +24,11 @@ class SurfelPrimitive final : public Primitive {
                   SurfaceWriter& writer) override;
     bool has_native_layers(DrawItems) const override { return true; }
     void begin_mean_layers(const Frame& frame, DrawItems items, std::span<const float> opaque) override {
-        software_.begin_layers(frame, sources_of(frame, items), opaque);
+        layer_sources_ = sources_of(frame, items);
+        software_.begin_layers(frame, layer_sources_, opaque);
     }
-    bool add_mean_layer(const Frame& frame, DrawItems items, PeelLimits& limits,
-                        SurfaceWriter& writer) override {
-        return software_.add_layer(frame, sources_of(frame, items), limits, writer);
+    bool add_mean_layer(const Frame& frame, DrawItems, PeelLimits& limits, SurfaceWriter& writer) override {
+        return software_.add_layer(frame, layer_sources_, limits, writer);
     }
     void begin_layers(const Frame& frame, DrawItems items, const gl::Texture& opaque) override {
         layers_.begin(frame, items, opaque);
@@ -53,6 +53,7 @@ class SurfelPrimitive final : public Primitive {
     double reach(const DrawItem& item) override { return shadows_.reach(item); }
     void evict_unused() override {
         buffers_.evict_unused();
+        batches_.evict_unused();
         shadows_.evict_unused();
     }
 
@@ -60,6 +61,8 @@ class SurfelPrimitive final : public Primitive {
     std::vector<SurfelSource> sources_of(const Frame& frame, DrawItems items);
 
     SurfelCache buffers_;
+    BatchedSurfels batches_;
+    std::vector<SurfelSource> layer_sources_;  ///< of begin_mean_layers()
     SurfelSplats splats_;
     SurfelLayers layers_;
     SoftwareSurfels software_;

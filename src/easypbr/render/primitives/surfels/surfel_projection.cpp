@@ -1,5 +1,9 @@
 #include "easypbr/render/primitives/surfels/surfel_projection.h"
 
+#include <limits>
+
+#include "easypbr/render/raster/curve_order.h"
+
 namespace easypbr::render {
 namespace {
 
@@ -10,25 +14,30 @@ Vec3 any_perpendicular(const Vec3& n) {
     return n.unitOrthogonal();
 }
 
-}  // namespace
-
-SurfelProjector::SurfelProjector(const DrawItem& item, const Frame& frame, double spacing) : item_(&item) {
-    const Eigen::Affine3d& T = item.object->T_world_mesh;
-    const Mat4d view_from_mesh = frame.camera.view() * T.matrix();
-    view_from_mesh_ = view_from_mesh.cast<float>();
-    clip_from_mesh_ = (frame.clip_from_view * view_from_mesh).cast<float>();
-    const Mat3d inverse = T.linear().inverse();
-    normal_from_mesh_ = inverse.transpose().cast<float>();
-    world_from_mesh_ = T.linear().cast<float>();
-    eye_ = (inverse * (frame.camera.position() - T.translation())).cast<float>();
-    towards_viewer_ = (inverse * frame.camera.T_world_cam.linear().col(2)).cast<float>();
-    orthographic_ = frame.orthographic();
-    width_ = float(frame.size.x());
-    height_ = float(frame.size.y());
-    near_ = float(frame.camera.near);
-    scale_ = item.style.surfel_scale;
-    radius_ = float(spacing * radii_per_spacing);
+void copy_to(const Vec3& from, float (&to)[3]) {
+    std::copy_n(from.data(), 3, to);
 }
+
+/// Around the surfels of a batch.
+SurfelBatches::Sphere sphere_of_batch(const native::SurfelBatch& batch) {
+    Box3 box;
+    float longest = 0;
+    for (int i = 0; i < batch.count; ++i) {
+        const auto at = [&](int vector) {
+            const float* const from = batch.vectors + 3 * vector * batch.count + i;
+            return Vec3(from[0], from[batch.count], from[2 * batch.count]);
+        };
+        const Vec3 p = at(0);
+        const float axis = std::max(at(1).norm(), at(2).norm());
+        if (!p.allFinite() || !std::isfinite(axis))
+            return {Vec3::Zero(), std::numeric_limits<float>::infinity()};
+        box.extend(p);
+        longest = std::max(longest, axis);
+    }
+    return {box.center(), box.diagonal().norm() / 2 + longest};
+}
+
+}  // namespace
 
 SurfelAxes surfel_axes(const MeshData& mesh, Eigen::Index i, const Vec3& towards, float radius, float scale) {
     Vec3 n = mesh.N.row(i);
@@ -45,73 +54,105 @@ SurfelAxes surfel_axes(const MeshData& mesh, Eigen::Index i, const Vec3& towards
     return {direction * (length * scale), n.cross(direction) * (other * scale)};
 }
 
-std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
-    const Vec3 p = item_->mesh().V.row(i);
-    const auto [t, b] =
-        surfel_axes(item_->mesh(), i, orthographic_ ? towards_viewer_ : Vec3(eye_ - p), radius_, scale_);
-    const Mat4& m = clip_from_mesh_;
-    const auto clip = [&](int row, const Vec3& v, float one) {
-        return m(row, 0) * v.x() + m(row, 1) * v.y() + m(row, 2) * v.z() + m(row, 3) * one;
-    };
-    const auto axial = [&](const Vec3& v, float one) {
-        const Mat4& view = view_from_mesh_;
-        return -(view(2, 0) * v.x() + view(2, 1) * v.y() + view(2, 2) * v.z() + view(2, 3) * one);
-    };
-    SurfelProjection s;
-    const Vec3 to_viewer = orthographic_ ? towards_viewer_ : Vec3(eye_ - p), n = item_->mesh().N.row(i);
-    const float lengths = n.norm() * to_viewer.norm(), towards = n.dot(to_viewer);
-    s.least = least_radius(lengths > 0 ? towards / lengths : 1);
-    if (item_->with_colors) s.color = item_->mesh().C.row(i).head<3>();
-    s.normal = n.squaredNorm() > 0 ? Vec3(normal_from_mesh_ * (towards < 0 ? Vec3(-n) : n))
-                                   : Vec3(world_from_mesh_ * to_viewer);
-    s.wc = clip(3, p, 1);
-    const float wt = clip(3, t, 0), wb = clip(3, b, 0);
-    s.z_c = axial(p, 1);
-    s.z_t = axial(t, 0);
-    s.z_b = axial(b, 0);
-    const float q_ww = wt * wt + wb * wb - s.wc * s.wc;
-    // All of it must lie beyond the near plane.
-    if (!(s.wc > 0 && q_ww < 0 && s.z_c - std::sqrt(s.z_t * s.z_t + s.z_b * s.z_b) > near_ * 0.999f))
-        return {};
-    s.centre_x = (clip(0, p, 1) / s.wc + 1) * 0.5f * width_;
-    s.centre_y = (1 - clip(1, p, 1) / s.wc) * 0.5f * height_;
-    const auto pixel_x = [&](const Vec3& v, float w) {
-        return 0.5f * width_ * (clip(0, v, 0) + w) - s.centre_x * w;
-    };
-    const auto pixel_y = [&](const Vec3& v, float w) {
-        return 0.5f * height_ * (w - clip(1, v, 0)) - s.centre_y * w;
-    };
-    s.tx = pixel_x(t, wt);
-    s.ty = pixel_y(t, wt);
-    s.bx = pixel_x(b, wb);
-    s.by = pixel_y(b, wb);
-    s.qx = s.ty * wb - wt * s.by;
-    s.qy = wt * s.bx - s.tx * wb;
-    s.qz = s.tx * s.by - s.ty * s.bx;
-    // Extent of the ellipse by its dual conic.
-    const auto extent = [&](float tk, float bk, float centre, float& low, float& high) {
-        const float q_kw = tk * wt + bk * wb, q_kk = tk * tk + bk * bk;
-        const float root = std::sqrt(std::max(0.0f, q_kw * q_kw - q_ww * q_kk));
-        low = centre + std::min((q_kw + root) / q_ww, -s.least);
-        high = centre + std::max((q_kw - root) / q_ww, s.least);
-    };
-    extent(s.tx, s.bx, s.centre_x, s.x0, s.x1);
-    extent(s.ty, s.by, s.centre_y, s.y0, s.y1);
-    if (!(s.x1 > 0 && s.x0 < width_ && s.y1 > 0 && s.y0 < height_)) return {};
-    s.band = std::max(t.norm(), b.norm()) * world_from_mesh_.col(0).norm();
-    return s;
+SurfelBatches::SurfelBatches(const MeshData& mesh, float radius, float scale) {
+    const auto all = size_t(mesh.V.rows());
+    for (size_t i = 0; i < all; ++i)
+        if (!(Vec3(mesh.N.row(Eigen::Index(i))).squaredNorm() > 0)) return;
+    vertices_ = curve_order(mesh.V, all, [](size_t i) { return i; });
+    vectors_.resize(components * all + most);
+    spheres_.resize((all + most - 1) / most);
+    parallel_for(spheres_.size(), 64, [&](size_t i) {
+        const native::SurfelBatch own = batch(i);
+        float* const to = vectors_.data() + components * most * i;
+        for (int k = 0; k < own.count; ++k) {
+            const auto vertex = Eigen::Index(vertices_[most * i + size_t(k)]);
+            const SurfelAxes axes = surfel_axes(mesh, vertex, Vec3::Zero(), radius, scale);
+            const std::array<Vec3, 4> vectors{mesh.V.row(vertex), axes.t, axes.b, mesh.N.row(vertex)};
+            for (size_t c = 0; c < components; ++c)
+                to[c * size_t(own.count) + size_t(k)] = vectors[c / 3][Eigen::Index(c % 3)];
+        }
+        spheres_[i] = sphere_of_batch(own);
+    });
 }
 
-void SurfelProjector::prefetch(Eigen::Index i) const {
+native::SurfelBatch SurfelBatches::batch(size_t i) const {
+    const size_t first = most * i;
+    return {vectors_.data() + components * first, int(std::min(most, vertices_.size() - first))};
+}
+
+native::SurfelVectors<float> SurfelBatches::vectors_of(size_t surfel) const {
+    const native::SurfelBatch own = batch(surfel / most);
+    const float* from = own.vectors + surfel % most;
+    native::SurfelVectors<float> vectors;
+    for (auto* const vector : {&vectors.p, &vectors.t, &vectors.b, &vectors.n})
+        for (float& number : *vector) {
+            number = *from;
+            from += own.count;
+        }
+    return vectors;
+}
+
+const SurfelBatches* BatchedSurfels::draw(const DrawItem& item, float radius) {
+    const MeshData& mesh = item.mesh();
+    if (mesh.V.rows() < few_surfels || mesh.N.empty()) return nullptr;
+    const float scale = item.style.surfel_scale;
+    const Key key{{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision()},
+                  {radius, scale}};
+    const SurfelBatches* const batches =
+        batches_.draw(key, [mesh, radius, scale] { return SurfelBatches(mesh, radius, scale); });
+    return batches && !batches->empty() ? batches : nullptr;
+}
+
+SurfelProjector::SurfelProjector(const DrawItem& item, const Frame& frame, double spacing,
+                                 BatchedSurfels& batches)
+    : item_(&item), radius_(float(spacing * radii_per_spacing)) {
+    batches_ = batches.draw(item, radius_);
+    const Eigen::Affine3d& T = item.object->T_world_mesh;
+    const Mat4d view_from_mesh = frame.camera.view() * T.matrix();
+    const Mat3d inverse = T.linear().inverse();
+    Eigen::Map<Mat3>(view_.normal_from_mesh[0]) = inverse.transpose().cast<float>();
+    Eigen::Map<Mat3>(view_.world_from_mesh[0]) = T.linear().cast<float>();
+    Eigen::Map<Mat4>(view_.clip_from_mesh[0]) = (frame.clip_from_view * view_from_mesh).cast<float>();
+    Eigen::Map<Vec4>(view_.axial) = -view_from_mesh.row(2).transpose().cast<float>();
+    copy_to((inverse * (frame.camera.position() - T.translation())).cast<float>(), view_.eye);
+    copy_to((inverse * frame.camera.T_world_cam.linear().col(2)).cast<float>(), view_.towards_viewer);
+    view_.orthographic = frame.orthographic();
+    view_.width = float(frame.size.x());
+    view_.height = float(frame.size.y());
+    view_.near = float(frame.camera.near);
+    view_.world_scale = T.linear().col(0).cast<float>().norm();
+}
+
+native::SurfelVectors<float> SurfelProjector::vectors_of(Eigen::Index vertex) const {
     const MeshData& mesh = item_->mesh();
-    const auto of = [&](const auto& array) {
-        if (!array.empty()) __builtin_prefetch(array.data() + i * array.cols());
+    const Vec3 to_viewer = view_.orthographic ? Vec3(Eigen::Map<const Vec3>(view_.towards_viewer))
+                                              : Eigen::Map<const Vec3>(view_.eye) - Vec3(mesh.V.row(vertex));
+    const SurfelAxes axes = surfel_axes(mesh, vertex, to_viewer, radius_, item_->style.surfel_scale);
+    native::SurfelVectors<float> vectors;
+    copy_to(mesh.V.row(vertex), vectors.p);
+    copy_to(axes.t, vectors.t);
+    copy_to(axes.b, vectors.b);
+    copy_to(mesh.N.row(vertex), vectors.n);
+    return vectors;
+}
+
+std::optional<SurfelProjection> SurfelProjector::project(size_t surfel) const {
+    SurfelProjection projection;
+    const bool is_seen = native::project_surfel(
+        view_, batches_ ? batches_->vectors_of(surfel) : vectors_of(Eigen::Index(surfel)), projection);
+    return is_seen ? std::optional(projection) : std::nullopt;
+}
+
+void SurfelProjector::prefetch(size_t surfel) const {
+    if (batches_) return;
+    const MeshData& mesh = item_->mesh();
+    const auto of = [&](const auto& rows) {
+        if (!rows.empty()) __builtin_prefetch(rows.data() + Eigen::Index(surfel) * rows.cols());
     };
     of(mesh.V);
     of(mesh.N);
     of(mesh.T);
     of(mesh.B);
-    if (item_->with_colors) of(mesh.C);
 }
 
 }  // namespace easypbr::render

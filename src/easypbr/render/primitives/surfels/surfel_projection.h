@@ -1,48 +1,30 @@
-// The ellipse of a surfel on the screen.
+// The ellipses of surfels on the screen.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
+#include "easypbr/core/parallel.h"
+#include "easypbr/native/shaders.h"
+#include "easypbr/native/surfel_ellipse.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/raster/batch_cache.h"
+#include "easypbr/render/raster/culling.h"
 
 namespace easypbr::render {
 
-/// No splat gets smaller than a pixel-sized square, which holds exactly one pixel's centre: the screen-space
-/// filter of EWA splatting as Botsch et al. 2005 approximate it, made no larger than it has to be.
-constexpr float least_surfel_radius = 0.5f;
-
-/// The same for a surfel whose normal has the cosine `facing` to the direction towards the viewer. Those that
-/// turn away lie just behind the rim of closed surfaces, which they would make ragged: seen edge-on they need
-/// no pixel of their own.
-inline float least_radius(float facing) {
-    return facing < 0 ? std::max(1e-3f, -facing * least_surfel_radius) : least_surfel_radius;
-}
-
-/// A surfel at p with semi-axes t and b covers the points p + u t + v b with u^2 + v^2 <= 1. Homogeneous
-/// pixel coordinates relative to the centre's are linear in (u, v, 1), so that the inverse of a 3 x 3 matrix
-/// takes a pixel back to (u, v), right under perspective (Sigg et al. 2006, "GPU-Based Ray-Casting of
-/// Quadratic Surfaces").
-struct SurfelProjection {
-    float centre_x, centre_y;  ///< pixels
-    float tx, ty, bx, by, wc;  ///< columns of the matrix; that of the centre is (0, 0, wc)
-    float qx, qy, qz;          ///< t x b
-    float z_t, z_b, z_c;       ///< axial distance is z_c + u z_t + v z_b
-    float x0, x1, y0, y1;      ///< box, pixels, relative to nothing
-    float least;               ///< half the side of the smallest square it covers, pixels
-    float band;                ///< surfels that deep behind the nearest are blended with it
-    Vec3 normal;               ///< in world space, towards the viewer, of any length
-    Vec3 color;                ///< its own, sRGB-encoded; undefined where the item shows none
-
+struct SurfelProjection : native::SurfelEllipse<float> {
     /// Of a pixel's centre: the squared radius in the ellipse, above 1 outside, and the axial distance.
     struct Hit {
         float r2, z;
     };
     Hit at(float x, float y) const {
         const float dx = x - centre_x, dy = y - centre_y;
-        const float far = std::max(std::abs(dx), std::abs(dy)) / least;
+        const float far = std::max(std::abs(dx), std::abs(dy)) * per_least;
         const float screen = far * far;
         const float q = qx * dx + qy * dy + qz;
         const float scale = wc / q;
@@ -67,26 +49,109 @@ struct SurfelAxes {
 };
 SurfelAxes surfel_axes(const MeshData& mesh, Eigen::Index i, const Vec3& towards, float radius, float scale);
 
-/// All surfels of an item in a frame.
-class SurfelProjector {
+/// Surfels that do not turn with the viewer, in batches of neighbours.
+class SurfelBatches {
   public:
-    /// `spacing`: mean distance of the points, for items without tangents.
-    SurfelProjector(const DrawItem& item, const Frame& frame, double spacing);
+    static constexpr size_t most = native::SurfelBatch::most_surfels;
 
-    /// Nothing for a surfel before the near plane or outside of the picture.
-    std::optional<SurfelProjection> project(Eigen::Index i) const;
+    /// On all cores. Empty where a surfel has no normal: it faces the viewer.
+    SurfelBatches(const MeshData& mesh, float radius, float scale);
 
-    /// Asks for what the others read of a surfel.
-    void prefetch(Eigen::Index i) const;
+    /// Of batches.
+    size_t count() const { return spheres_.size(); }
+    bool empty() const { return spheres_.empty(); }
+    native::SurfelBatch batch(size_t i) const;
+    /// The vertex that a surfel is; surfels are numbered through all batches.
+    uint32_t vertex_of(size_t surfel) const { return vertices_[surfel]; }
+    native::SurfelVectors<float> vectors_of(size_t surfel) const;
+    /// Around all that they cover; infinite where one is not finite.
+    struct Sphere {
+        Vec3 center;
+        float radius;
+    };
+    const Sphere& sphere_of(size_t batch) const { return spheres_[batch]; }
 
   private:
-    const DrawItem* item_;
-    Mat4 clip_from_mesh_, view_from_mesh_;
-    Mat3 normal_from_mesh_, world_from_mesh_;
-    Vec3 eye_;             ///< in the mesh's frame
-    Vec3 towards_viewer_;  ///< orthographic, in the mesh's frame
-    bool orthographic_;
-    float width_, height_, near_, scale_, radius_;
+    static constexpr size_t components = native::SurfelBatch::components;
+
+    std::vector<uint32_t> vertices_;
+    std::vector<float> vectors_;
+    std::vector<Sphere> spheres_;
 };
+
+/// The batches of meshes, by the revisions of what surfels are made from, their radius and their scale.
+class BatchedSurfels {
+  public:
+    /// Null until there are any, and where surfels turn with the viewer.
+    const SurfelBatches* draw(const DrawItem& item, float radius);
+    void evict_unused() { batches_.evict_unused(); }
+
+  private:
+    /// Surfels that are drawn in a few milliseconds.
+    static constexpr Eigen::Index few_surfels = 1 << 13;
+
+    using Key = std::pair<std::array<uint64_t, 4>, std::array<float, 2>>;
+    BatchCache<Key, SurfelBatches> batches_;
+};
+
+/// All surfels of an item in a frame. They are numbered as the batches number them, if there are any, or as
+/// the mesh does.
+class SurfelProjector {
+  public:
+    /// `spacing`: mean distance of the points, for items without tangents. `batches`: of the item, may be
+    /// null; they must outlive this one.
+    SurfelProjector(const DrawItem& item, const Frame& frame, double spacing, BatchedSurfels& batches);
+
+    /// The vertex that a surfel is.
+    size_t vertex_of(size_t surfel) const { return batches_ ? batches_->vertex_of(surfel) : surfel; }
+
+    /// Nothing for a surfel before the near plane or outside of the picture.
+    std::optional<SurfelProjection> project(size_t surfel) const;
+
+    /// Calls visit(surfel, projection) for those that project() finds, on all cores.
+    template <class Visit>
+    void project_all(const Visit& visit) const;
+
+    /// Asks for what project() reads of a surfel.
+    void prefetch(size_t surfel) const;
+
+  private:
+    native::SurfelVectors<float> vectors_of(Eigen::Index vertex) const;
+
+    const DrawItem* item_;
+    const SurfelBatches* batches_;
+    native::SurfelView view_;
+    float radius_;
+};
+
+template <class Visit>
+void SurfelProjector::project_all(const Visit& visit) const {
+    constexpr size_t grain = 1 << 13;
+    if (!batches_) {
+        parallel_for(size_t(item_->mesh().V.rows()), grain, [&](size_t i) {
+            if (const auto projection = project(i)) visit(i, *projection);
+        });
+        return;
+    }
+    const Vec2i size(int(view_.width), int(view_.height));
+    const Frustum frustum(Eigen::Map<const Mat4>(view_.clip_from_mesh[0]), size, {0, 0, size.x(), size.y()});
+    parallel_chunks(batches_->count(), grain / SurfelBatches::most, [&](size_t begin, size_t end) {
+        native::SurfelScreen screen;
+        for (size_t i = begin; i < end; ++i) {
+            const SurfelBatches::Sphere& sphere = batches_->sphere_of(i);
+            if (frustum.drops(sphere.center, sphere.radius)) continue;
+            native::SurfelBatch batch = batches_->batch(i);
+            batch.view = &view_;
+            const int kept = native::set_up_surfels(batch, screen);
+            for (int k = 0; k < kept; ++k) {
+                const int at = screen.kept[k];
+                SurfelProjection projection;
+                const auto members = projection.all();
+                for (size_t m = 0; m < members.size(); ++m) *members[m] = screen.ellipses[m][at];
+                visit(i * SurfelBatches::most + size_t(at), projection);
+            }
+        }
+    });
+}
 
 }  // namespace easypbr::render

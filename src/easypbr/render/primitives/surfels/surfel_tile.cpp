@@ -15,29 +15,30 @@ void SurfelTile::place(Vec2i frame, Vec2i tile) {
 void SurfelTile::project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries,
                          std::span<const std::vector<SurfelProjection>> kept) {
     const auto prefetch = [&](uint64_t entry) {
-        const size_t source = entry >> 32;
+        const size_t source = source_of(entry);
         if (kept.empty()) return sources[source].projector.prefetch(surfel_of(entry));
-        const auto* const from = reinterpret_cast<const char*>(&kept[source][size_t(surfel_of(entry))]);
+        const auto* const from = reinterpret_cast<const char*>(&kept[source][surfel_of(entry)]);
         __builtin_prefetch(from);
         __builtin_prefetch(from + sizeof(SurfelProjection) - 1);
     };
     projections.clear();
     for (size_t k = 0; k < entries.size(); ++k) {
         if (k + ahead < entries.size()) prefetch(entries[k + ahead]);
-        const size_t source = entries[k] >> 32;
-        const Eigen::Index surfel = surfel_of(entries[k]);
+        const size_t source = source_of(entries[k]), surfel = surfel_of(entries[k]);
         projections.push_back(kept.empty() ? *sources[source].projector.project(surfel)
-                                           : kept[source][size_t(surfel)]);
+                                           : kept[source][surfel]);
     }
 }
 
-std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource& source, Eigen::Index surfel,
+std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource& source, size_t surfel,
                                                               const SurfelProjection& s) {
     const DrawItem& item = *source.item;
+    const size_t vertex = source.projector.vertex_of(surfel);
     const Material& m = item.material;
     Vec3 albedo = m.base_color;
-    if (item.with_colors) albedo = albedo.cwiseProduct(linear_from_srgb(s.color));
-    const Vec3 n = s.normal.normalized();
+    if (item.with_colors)
+        albedo = albedo.cwiseProduct(linear_from_srgb(item.mesh().C.row(Eigen::Index(vertex)).head<3>()));
+    const Vec3 n = Eigen::Map<const Vec3>(s.normal).normalized();
     return {albedo.x(),
             albedo.y(),
             albedo.z(),
@@ -48,7 +49,7 @@ std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource
             m.roughness,
             0,
             1,
-            vertex_alpha(item, size_t(surfel))};
+            vertex_alpha(item, vertex)};
 }
 
 SurfacePixel SurfelTile::mean(const Frame& frame, const DrawItem& item, size_t i) const {

@@ -22,8 +22,11 @@ struct SurfelSource {
 };
 
 /// Of an entry: source in the upper, surfel in the lower half.
-inline Eigen::Index surfel_of(uint64_t entry) {
-    return Eigen::Index(entry & 0xffffffffu);
+inline size_t surfel_of(uint64_t entry) {
+    return entry & 0xffffffffu;
+}
+inline size_t source_of(uint64_t entry) {
+    return entry >> 32;
 }
 
 inline float reversed_depth(const Frame& frame, float z) {
@@ -99,7 +102,7 @@ struct SurfelTile {
     /// Adds a surfel, whose projection that is, to the pixels where `takes(index, hit)` says so; their limits
     /// are set.
     template <bool is_layer, class Takes>
-    void add(const SurfelSource& source, Eigen::Index surfel, const SurfelProjection& s, Takes&& takes);
+    void add(const SurfelSource& source, size_t surfel, const SurfelProjection& s, Takes&& takes);
     /// The mean surface of a pixel whose weights are not 0, but for its object and element.
     SurfacePixel mean(const Frame& frame, const DrawItem& item, size_t i) const;
 
@@ -108,13 +111,12 @@ struct SurfelTile {
     static constexpr float quantum = 1.0f / (1 << 30);
     static int64_t quantised(float value) { return int64_t(std::lrintf(value * (1 / quantum))); }
     /// What a surfel adds, but for what depends on the pixel.
-    static std::array<float, channels> values_of(const SurfelSource& source, Eigen::Index surfel,
+    static std::array<float, channels> values_of(const SurfelSource& source, size_t surfel,
                                                  const SurfelProjection& s);
 };
 
 template <bool is_layer, class Takes>
-void SurfelTile::add(const SurfelSource& source, Eigen::Index surfel, const SurfelProjection& s,
-                     Takes&& takes) {
+void SurfelTile::add(const SurfelSource& source, size_t surfel, const SurfelProjection& s, Takes&& takes) {
     constexpr size_t summed = is_layer ? channels : opacity;
     std::array<float, channels> values;
     bool is_known = false;  // Most surfels of a closed surface are hidden.
