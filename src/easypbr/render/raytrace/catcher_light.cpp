@@ -48,6 +48,10 @@ struct CatcherLight::SkyPoint {
 
 /// Rays that look whether light arrives.
 struct CatcherLight::Looks {
+    explicit Looks(size_t places) {
+        rays.reserve(2 * places);
+        lights.reserve(2 * places);
+    }
     /// Light that arrives unless something is met.
     void add_open(const RaySegment& ray, uint32_t index, float light) { add(ray, {index, light, false}); }
     /// Light that is taken to arrive, and does not where something is met.
@@ -161,7 +165,7 @@ void CatcherLight::add_skies(const PathBatch& batch, const std::vector<float>& d
     const std::vector<SkyPoint> points = sky_points(batch, distances);
     const PathVectors<2> lobe = batch.points(0, lobe_point);
     const RayScene::Ball& ball = scene_->ball();
-    Looks looks;
+    Looks looks(points.size());
     // Directions whose sky is read together: within cones, and distributed by the cosine.
     std::vector<size_t> of_points;
     std::vector<Vec3> directions;

@@ -210,20 +210,23 @@ class PathPass::CaughtTile {
     PixelsOfTile<Caught>* values_ = nullptr;
 };
 
-template <class Visit>
-void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Visit&& visit) {
+template <class Read, class Visit>
+void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Read&& read, Visit&& visit) {
+    constexpr int rows_ahead = 2;
     const int right = block.x + block.width, bottom = block.y + block.height;
     const SampledTiles* const tiles = pixels.starts.tiles;
     for (int left = block.x; left < right; left += SampledTiles::side) {
         if (tiles && tiles->has_ended(tiles->tile_at(left, block.y))) continue;
         CaughtTile caught(*this, left, block.y);
-        for (int y = block.y; y < bottom; ++y)
+        for (int y = block.y; y < bottom; ++y) {
+            for (const void* pixel : read(left, y + rows_ahead)) __builtin_prefetch(pixel);
             for (int x = left; x < std::min(left + SampledTiles::side, right); ++x) {
                 const float* depth = pixels.depth.at(x, y);
                 if (!depth || !(*depth > 0)) continue;
                 const auto index = uint32_t((y - block.y) * block.width + x - block.x);
                 visit(x, y, index, (*pixels.material.at(x, y))[3], caught);
             }
+        }
     }
 }
 
@@ -238,7 +241,14 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         else if (is_catcher(kind) && pixels.starts.caught && of_tile.at(x, y).is_due(pixels.turn_of(x, y)))
             caught.add(pixels, x, y, index);
     };
-    each_traced(pixels, block, sort);
+    // What is read of a tile's row: the caches do not foresee rows that are so short.
+    constexpr int half = SampledTiles::side / 2, quarter = half / 2;
+    const auto surfaces = [&](int x, int y) {
+        return std::array<const void*, 5>{pixels.depth.at(x, y), pixels.material.at(x, y),
+                                          pixels.normal.at(x, y), pixels.albedo.at(x, y),
+                                          pixels.albedo.at(x + half, y)};
+    };
+    each_traced(pixels, block, surfaces, sort);
     std::vector<bool> is_hit(count, false);
     std::vector<PathTracer::Hit> hits = hits_of(pixels, extended, is_hit, lit);
     PathRadiance radiance(count);
@@ -262,7 +272,15 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         if (pixels.starts.caught && is_catcher(kind))
             *pixels.caught.at(x, y) = of_tile.at(x, y).add(light[index]);
     };
-    each_traced(pixels, block, write);
+    const auto colors = [&](int x, int y) {
+        std::array<const void*, 8> read;
+        for (int i = 0; i < 4; ++i) {
+            read[size_t(i)] = pixels.radiance.at(x + i * quarter, y);
+            read[size_t(4 + i)] = pixels.emission.at(x + i * quarter, y);
+        }
+        return read;
+    };
+    each_traced(pixels, block, colors, write);
 }
 
 std::vector<PathTracer::Hit> PathPass::hits_of(const Pixels& pixels, Block& extended,

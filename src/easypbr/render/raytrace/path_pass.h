@@ -70,8 +70,8 @@ class PathPass {
     class CaughtTile;
     /// Calls visit(x, y, index, kind, caught) for the pixels of a block of whole tiles that paths start from,
     /// tile by tile: index in the block, the surface's code, CaughtTile&.
-    template <class Visit>
-    void each_traced(const Pixels& pixels, const PixelRect& block, Visit&& visit);
+    template <class Read, class Visit>
+    void each_traced(const Pixels& pixels, const PixelRect& block, Read&& read, Visit&& visit);
 
     TilePixels<Caught> caught_;
 };
