@@ -17,21 +17,40 @@ std::string up_of_file(const std::string& name) {
     return resolve(scene.snapshot(), {}, {64, 48}).settings.camera.up;
 }
 
-/// Of a PCD file with two points, whose second coordinate along z is `z`.
-Vec3d up_of_pcd(int rows, float z) {
+/// A PCD file with two points, whose second coordinate along z is `z`.
+MeshData pcd(int rows, float z) {
     const std::string text = fmt::format(
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {}\nHEIGHT {}\nPOINTS 2\n"
         "DATA ascii\n0 0 1\n1 1 {}\n",
         2 / rows, rows, z);
-    return io::read_pcd(io::Source(std::string_view(text), "test.pcd")).up;
+    return io::read_pcd(io::Source(std::string_view(text), "test.pcd"));
+}
+
+/// A PLY file with the points (0, 0, 0) and (2, 0, 0), and a camera.
+MeshData ply(const Vec3d& camera) {
+    const std::string text = fmt::format(
+        "ply\nformat ascii 1.0\nelement camera 1\nproperty float view_px\nproperty float view_py\n"
+        "property float view_pz\nproperty float focal\nelement vertex 2\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n{} {} {} 1\n0 0 0\n2 0 0\n",
+        camera.x(), camera.y(), camera.z());
+    return io::read_ply(io::Source(std::string_view(text), "test.ply"));
 }
 
 }  // namespace
 
 TEST(UpOfFiles, OfDepthImagesIsTheirCamerasUp) {
-    EXPECT_EQ(up_of_pcd(1, 2), Vec3d(0, 0, 1));
-    EXPECT_EQ(up_of_pcd(2, 2), Vec3d(0, -1, 0));
-    EXPECT_EQ(up_of_pcd(2, -2), Vec3d(0, 0, 1)) << "a lidar's rings";
+    EXPECT_EQ(pcd(1, 2).up, Vec3d(0, 0, 1));
+    EXPECT_EQ(pcd(2, 2).up, Vec3d(0, -1, 0));
+    EXPECT_EQ(pcd(2, -2).up, Vec3d(0, 0, 1)) << "a lidar's rings";
+}
+
+TEST(FrontOfFiles, OfDepthImagesIsWhereTheirCameraStood) {
+    EXPECT_EQ(pcd(1, 2).front, Vec3d(0, 0, 0));
+    EXPECT_EQ(pcd(2, 2).front, Vec3d(0, 0, -1));
+    EXPECT_EQ(pcd(2, -2).front, Vec3d(0, 0, 0)) << "a lidar's rings";
+    EXPECT_LT((ply({1, 4, 3}).front - Vec3d(0, 0.8, 0.6)).norm(), 1e-6);
+    EXPECT_EQ(ply({1, 0.5, 0}).front, Vec3d(0, 0, 0)) << "among the points";
+    EXPECT_EQ(ply(Vec3d::Constant(std::nan(""))).front, Vec3d(0, 0, 0));
 }
 
 TEST(UpOfFiles, SurvivesMergingAndTurning) {
@@ -48,6 +67,17 @@ TEST(UpOfFiles, SurvivesMergingAndTurning) {
     other.up.setZero();
     root.children.push_back(Mesh(other));
     EXPECT_EQ(flatten(Mesh(root)).up, Vec3d(0, 1, 0));
+}
+
+TEST(FrontOfFiles, SurvivesMergingAndTurning) {
+    MeshData one;
+    one.V = Array3f::Dense(Array3f::Dense::Identity(3, 3));
+    one.front = Vec3d::UnitZ();
+    EXPECT_EQ(transformed(one, Eigen::Affine3d(Eigen::AngleAxisd(pi, Vec3d::UnitX()))).front.z(), -1);
+    MeshData other = one;
+    EXPECT_EQ(merged(std::vector{one, other}).front, Vec3d(0, 0, 1));
+    other.front.setZero();
+    EXPECT_EQ(merged(std::vector{one, other}).front, Vec3d(0, 0, 0));
 }
 
 TEST(UpOfFiles, LetsScansStand) {

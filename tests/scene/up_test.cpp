@@ -175,4 +175,71 @@ TEST(Up, IsPinnedLatchedAndReleased) {
     EXPECT_EQ(resolve(scene.snapshot(), settings, size).settings.camera.up, "+y");
 }
 
+namespace {
+
+Mesh with_front(const Vec3d& front, const Vec3d& up = Vec3d::Zero()) {
+    MeshData data = *make_sphere(1, 32).snapshot();
+    data.front = front;
+    data.up = up;
+    return Mesh(data);
+}
+
+Camera camera_of(const Scene& scene, const Settings& settings = {}) {
+    return resolve(scene.snapshot(), settings, size).camera;
+}
+
+}  // namespace
+
+// A depth image is seen from where its camera stood, upright.
+TEST(Front, IsWhereTheAutomaticCameraStands) {
+    for (const Vec3d& up : {Vec3d(0, -1, 0), Vec3d(0, 0, 1), Vec3d(1, 0, 0)})
+        for (const Vec3d& front : {Vec3d(0, 0, -1), Vec3d(0.3, 0.5, -2), Vec3d(-1, 0.2, 0.1)}) {
+            Scene scene;
+            scene.show(with_front(front, up), "image");
+            const Camera camera = camera_of(scene);
+            EXPECT_LT((camera.T_world_cam.linear().col(2) - front.normalized()).norm(), 1e-6)
+                << up.transpose() << " from " << front.transpose();
+            EXPECT_GT(camera.T_world_cam.linear().col(1).dot(up), 0) << "upright";
+            EXPECT_GT((camera.position() / front.norm()).dot(front), 1) << "beyond the sphere";
+        }
+}
+
+TEST(Front, TurnsWithTheMesh) {
+    Mesh mesh = with_front(Vec3d::UnitZ());
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(0.7, Vec3d::UnitY())));
+    Scene scene;
+    scene.show(mesh, "image");
+    EXPECT_LT((camera_of(scene).T_world_cam.linear().col(2) - Vec3d(std::sin(0.7), 0, std::cos(0.7))).norm(),
+              1e-6);
+}
+
+TEST(Front, OfImagesThatDisagreeIsTheUsualView) {
+    Scene usual, images;
+    usual.show(make_sphere(1, 32), "model");
+    const Mat3d expected = camera_of(usual).T_world_cam.linear();
+    images.show(with_front(Vec3d(0, 0, 1)), "first");
+    EXPECT_FALSE(camera_of(images).T_world_cam.linear().isApprox(expected));
+    images.show(with_front(Vec3d(0.1, 0, 1)), "second");
+    EXPECT_LT((camera_of(images).T_world_cam.linear().col(2) - Vec3d(0, 0, 1)).norm(), 1e-6);
+    images.show(with_front(Vec3d(1, 0, 1)), "third");
+    EXPECT_TRUE(camera_of(images).T_world_cam.linear().isApprox(expected));
+    images.remove("second");
+    images.remove("third");
+    images.show(make_sphere(1, 32), "model");
+    EXPECT_TRUE(camera_of(images).T_world_cam.linear().isApprox(expected)) << "a model beside an image";
+}
+
+TEST(Front, YieldsToGivenAngles) {
+    Scene scene;
+    scene.show(with_front(Vec3d(1, 0, 0)), "image");
+    Settings settings;
+    settings.camera.azimuth_deg = 0;
+    settings.camera.elevation_deg = 0;
+    EXPECT_LT((camera_of(scene, settings).T_world_cam.linear().col(2) - Vec3d(0, 0, 1)).norm(), 1e-6);
+    settings.camera.azimuth_deg = automatic;
+    const ResolvedSettings resolved = resolve(scene.snapshot(), settings, size);
+    EXPECT_NEAR(resolved.settings.camera.azimuth_deg, 90, 1e-3);
+    EXPECT_EQ(resolved.settings.camera.elevation_deg, 0);
+}
+
 }  // namespace easypbr::up_test

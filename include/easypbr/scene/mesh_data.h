@@ -87,6 +87,8 @@ struct MeshData {
     Vec3d offset{0, 0, 0};
     /// Direction that points up by the convention of the file's format, in the frame of V; zero: it has none.
     Vec3d up{0, 0, 0};
+    /// Direction from the points of a depth image back to its camera, in the frame of V; zero: they are none.
+    Vec3d front{0, 0, 0};
     float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same

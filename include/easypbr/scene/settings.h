@@ -45,8 +45,12 @@ struct BasicCameraSettings {
     float fov_y_deg = 30;              ///< vertical field of view in degrees, 1 to 170; perspective
     MaybeAuto<double> ortho_height{};  ///< height of the view volume, world units, above 0; orthographic
     MaybeAuto<double> near{};          ///< distance to the near clipping plane, world units, above 0
-    float azimuth_deg = 30;            ///< of an automatic camera, degrees: 0 in front, positive to the right
-    float elevation_deg = 15;          ///< of an automatic camera, degrees: 0 level, 90 from above
+    /// Of an automatic camera, degrees: 0 in front, positive to the right; automatic: 30, or where the camera of
+    /// a depth image stood.
+    MaybeAuto<float> azimuth_deg{};
+    /// Of an automatic camera, degrees: 0 level, 90 from above; automatic: 15, or where the camera of a depth
+    /// image stood.
+    MaybeAuto<float> elevation_deg{};
     float margin = 0.05f;              ///< fraction of the image left free by an automatic camera, 0 to 0.9
     std::vector<double> pose;          ///< empty, or 16 numbers: T_world_cam row by row, OpenGL axes
     std::vector<double> intrinsics;    ///< empty, or fx, fy, cx, cy, width, height and skew (OpenCV), pixels

@@ -96,6 +96,21 @@ void take_pose(const Content& content, CameraSettings& settings, Camera& camera)
 
 }  // namespace
 
+ViewAngles inferred_view(const SceneSnapshot& scene, const Vec3d& up) {
+    constexpr double alike = 0.985;  // the cosine of 10 degrees
+    Vec3d front(0, 0, 0);
+    for (const SceneSnapshot::Object& object : scene.objects) {
+        if (object.mesh->V.empty()) continue;
+        const Vec3d own = (object.T_world_mesh.linear() * object.mesh->front).normalized();
+        if (own.isZero() || (!front.isZero() && front.dot(own) < alike)) return usual_view;
+        if (front.isZero()) front = own;
+    }
+    if (front.isZero()) return usual_view;
+    const Vec3d stands = up_frame(up) * front;  // to the right of the content, above it, in front of it
+    return {float(degrees(std::atan2(stands.x(), stands.z()))),
+            float(degrees(std::asin(std::clamp(stands.y(), -1.0, 1.0))))};
+}
+
 Camera lens_of(const CameraSettings& settings) {
     Camera lens;
     if (!settings.intrinsics.empty()) {

@@ -46,6 +46,16 @@ void fill(Auto<T>& setting, const T& inferred) {
 /// poses.
 std::string inferred_up(const SceneSnapshot& scene);
 
+/// Where an automatic camera stands around the content, as camera.azimuth_deg and elevation_deg say it.
+struct ViewAngles {
+    float azimuth_deg, elevation_deg;
+};
+inline constexpr ViewAngles usual_view{30, 15};
+
+/// Where the camera stood of the depth images that the content is, if they agree within 10 degrees; else the
+/// usual view.
+ViewAngles inferred_view(const SceneSnapshot& scene, const Vec3d& up);
+
 /// Projection, angle or intrinsics of the settings, without a pose. Throws ArgumentError for bad intrinsics.
 Camera lens_of(const CameraSettings& settings);
 

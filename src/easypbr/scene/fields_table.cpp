@@ -148,10 +148,12 @@ void add_camera(Table& table) {
                          "the content, but at least 0.001 of the distance to the target.",
                          "world units", {positive, unlimited}));
     table.push_back(make("camera.azimuth_deg", EASYPBR_AT(camera.azimuth_deg),
-                         "Azimuth of an automatic camera: 0 in front of the content, positive to its right.",
+                         "Azimuth of an automatic camera: 0 in front of the content, positive to its right; "
+                         "automatic: 30, or where the camera of a depth image stood.",
                          "degrees", {-360, 360}));
     table.push_back(make("camera.elevation_deg", EASYPBR_AT(camera.elevation_deg),
-                         "Elevation of an automatic camera: 0 level with the content, 90 directly above it.",
+                         "Elevation of an automatic camera: 0 level with the content, 90 directly above it; "
+                         "automatic: 15, or where the camera of a depth image stood.",
                          "degrees", {-90, 90}));
     table.push_back(make("camera.margin", EASYPBR_AT(camera.margin),
                          "Fraction of the image left free around the content by an automatic camera, both "

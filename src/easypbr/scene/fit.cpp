@@ -196,7 +196,8 @@ Mat3d up_frame(const Vec3d& up) {
 }
 
 Mat3d view_rotation(const CameraSettings& settings) {
-    const double azimuth = radians(settings.azimuth_deg), elevation = radians(settings.elevation_deg);
+    const double azimuth = radians(settings.azimuth_deg.value_or(detail::usual_view.azimuth_deg)),
+                 elevation = radians(settings.elevation_deg.value_or(detail::usual_view.elevation_deg));
     const Mat3d frame = up_frame(up_direction(settings));
     const Vec3d right = frame.row(0), up = frame.row(1), front = frame.row(2);
     const Vec3d level = std::cos(azimuth) * front + std::sin(azimuth) * right;

@@ -217,8 +217,11 @@ MeshData merged(Meshes meshes) {
     whole.L = joined_either<Array1i>(meshes, "labels", no_label, [](const MeshData& mesh) { return mesh.L; });
     whole.label_map = first_label_map(meshes);
     whole.scalars = joined_scalars(meshes);
-    const Vec3d up = meshes.front().up;
-    if (all_have(meshes, [&](const MeshData& mesh) { return mesh.up == up; })) whole.up = up;
+    for (Vec3d MeshData::*direction : {&MeshData::up, &MeshData::front}) {
+        const Vec3d first = meshes.front().*direction;
+        if (all_have(meshes, [&](const MeshData& mesh) { return mesh.*direction == first; }))
+            whole.*direction = first;
+    }
     const float voxel_size = meshes.front().voxel_size;
     if (all_have(meshes, [&](const MeshData& mesh) { return mesh.voxel_size == voxel_size; }))
         whole.voxel_size = voxel_size;

@@ -145,6 +145,11 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     Settings settings = given;
     ResolvedSettings resolved;
     if (!settings.camera.up.value()) detail::fill(settings.camera.up, detail::inferred_up(scene));
+    if (!settings.camera.azimuth_deg.value() || !settings.camera.elevation_deg.value()) {
+        const detail::ViewAngles view = detail::inferred_view(scene, up_direction(settings.camera));
+        detail::fill(settings.camera.azimuth_deg, view.azimuth_deg);
+        detail::fill(settings.camera.elevation_deg, view.elevation_deg);
+    }
     resolved.camera = detail::resolve_camera(content, settings.camera, {double(size.x()) / size.y(), insets});
     resolve_environment(scene, settings, resolved);
     resolve_lights(content, settings, resolved);

@@ -74,6 +74,7 @@ MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T) {
     if (!mesh.splats.empty()) result.splats = transformed_splats(mesh.splats, M);
     if (determinant < 0 && !mesh.F.empty()) result.F = Array3i::Dense(mesh.F.rowwise().reverse());
     if (!mesh.up.isZero()) result.up = M * mesh.up;
+    if (!mesh.front.isZero()) result.front = M * mesh.front;
     result.voxel_size = float(mesh.voxel_size * std::cbrt(std::abs(determinant)));
     return result;
 }

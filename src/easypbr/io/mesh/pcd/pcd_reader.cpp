@@ -194,10 +194,8 @@ MeshData read_points(const Source& source, const PcdHeader& header) {
 }
 
 /// Depth images are in their camera's frame, y down and z forward; what lidars and surveys measure has z up.
-Vec3d up_of(const PcdHeader& header, const MeshData& mesh) {
-    const bool is_image =
-        header.rows > 1 && !mesh.V.empty() && mesh.V.col(2).minCoeff() + mesh.offset.z() > 0;
-    return is_image ? Vec3d(-Vec3d::UnitY()) : Vec3d(Vec3d::UnitZ());
+bool is_depth_image(const PcdHeader& header, const MeshData& mesh) {
+    return header.rows > 1 && !mesh.V.empty() && mesh.V.col(2).minCoeff() + mesh.offset.z() > 0;
 }
 
 }  // namespace
@@ -207,7 +205,11 @@ MeshData read_pcd(const Source& source) {
     const PcdHeader header = parse_pcd_header(source);
     MeshData mesh = read_points(source, header);
     drop_points_without_position(source, mesh);
-    mesh.up = up_of(header, mesh);
+    mesh.up = Vec3d::UnitZ();
+    if (is_depth_image(header, mesh)) {
+        mesh.up = -Vec3d::UnitY();
+        mesh.front = -Vec3d::UnitZ();
+    }
     return mesh;
 }
 

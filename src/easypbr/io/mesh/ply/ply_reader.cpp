@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
@@ -53,6 +54,7 @@ class PlyReader {
         split_vertices();
         make_mesh();
         add_materials();
+        set_front();
         if (strip_triangles_.empty()) face_values_.move_into(mesh_);
         return std::move(mesh_);
     }
@@ -75,7 +77,8 @@ class PlyReader {
     }
 
     void plan_elements() {
-        bool has_vertices = false, has_faces = false, has_strips = false, has_edges = false;
+        bool has_vertices = false, has_faces = false, has_strips = false, has_edges = false,
+             has_camera = false;
         for (const Element& element : header_.elements) {
             plans_.push_back({&element, std::vector<Column>(element.properties.size())});
             ElementPlan& plan = plans_.back();
@@ -87,6 +90,7 @@ class PlyReader {
             if (is_first("tristrips", has_strips))
                 plan_list(plan, {"vertex_indices", "vertex_index"}, strips_);
             if (is_first("edge", has_edges)) plan_edges(plan);
+            if (is_first("camera", has_camera) && element.count == 1) plan_camera(plan);
         }
         if (vertices_.count() == 0) fail(source_, "no vertices: an element 'vertex' with x, y, z expected");
     }
@@ -148,6 +152,12 @@ class PlyReader {
         }
     }
 
+    /// Where a scanner stood, as VCGLib writes it with range maps.
+    void plan_camera(ElementPlan& plan) {
+        const auto place = find_scalars(*plan.element, Names{"view_px", "view_py", "view_pz"});
+        for (size_t i = 0; i < place.size(); ++i) plan.columns[place[i]].floats = &camera_[Eigen::Index(i)];
+    }
+
     bool is_cloud() const { return faces_.rows == 0 && strips_.rows == 0 && E_.size() == 0; }
 
     void check() {
@@ -207,6 +217,16 @@ class PlyReader {
         mesh_.source_face = {};
     }
 
+    /// Files that are no range maps may have a camera too, which stands anywhere, or within the content.
+    void set_front() {
+        if (!camera_.allFinite()) return;
+        Box3d box;
+        for (Eigen::Index i = 0; i < mesh_.V.rows(); ++i)
+            box.extend(Vec3(mesh_.V.row(i)).cast<double>());
+        const Vec3d way = camera_.cast<double>() - mesh_.offset - box.center();
+        if (way.norm() > box.diagonal().norm() / 2) mesh_.front = way.normalized();
+    }
+
     /// VCGLib writes "<this>" for the file's own name without its extension.
     std::string without_placeholder(std::string name) const {
         const std::string_view placeholder = "<this>";
@@ -237,6 +257,7 @@ class PlyReader {
     VertexArrays vertices_;
     SplatColumns splats_;
     std::array<PropertyPlace, 3> position_{};  ///< of x, y, z
+    Vec3 camera_ = Vec3::Constant(std::numeric_limits<float>::quiet_NaN());
     Array2i::Dense E_;
     Polygons faces_, strips_;
     FaceArrays face_values_;
