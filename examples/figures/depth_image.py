@@ -16,7 +16,7 @@ from figure import main, placed, row, sized
 def table() -> Scene:
     """What the depth camera looks at."""
     scene = Scene()
-    for name, mesh, color in (("board", shapes.plane(3.6), "#b08a60"),
+    for name, mesh, color in (("board", shapes.plane(40), "#b08a60"),
                               ("teapot", placed(shapes.teapot(), turn_deg=20, scale=0.7), "#c8503c"),
                               ("ball", placed(shapes.sphere(), x=-1.1, y=0.3, z=0.5, scale=0.35), "#3f72b5"),
                               ("cube", placed(shapes.box(), x=1, y=0.25, z=-0.4, turn_deg=30, scale=0.6), "#4f9a56")):
@@ -26,15 +26,15 @@ def table() -> Scene:
 
 
 def measured(path: pathlib.Path) -> None:
-    """What a depth camera would write: an organised PCD, without a number where it sees nothing."""
+    """What a depth camera would write: an organised PCD."""
     size = width, height = 640, 480
-    view = Viewer(size, {"camera": {"azimuth_deg": 0, "elevation_deg": 35}, "path": {"enabled": False}}, table())
+    view = Viewer(size, {"camera": {"position": (0, 3, 4.5), "target": (0, 0.2, 0)}, "path": {"enabled": False}}, table())
     color = view.render()[:, :, :3].astype(np.uint32)
     depth = view.layers(["depth"])["depth"].astype(np.float32)
     y, x = np.mgrid[0:height, 0:width]
     rays = np.linalg.inv(view.camera.opencv_K(size)) @ np.stack([x.ravel(), y.ravel(), np.ones(x.size)])
     rows = np.empty(x.size, [("xyz", "<f4", 3), ("rgb", "<u4")])
-    rows["xyz"] = (rays * np.where(depth > 0, depth, np.nan).ravel()).T
+    rows["xyz"] = (rays * depth.ravel()).T
     rows["rgb"] = (color @ np.array([1 << 16, 1 << 8, 1], np.uint32)).ravel()
     header = ("VERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n"
               f"WIDTH {width}\nHEIGHT {height}\nPOINTS {x.size}\nDATA binary\n")

@@ -342,5 +342,5 @@ int main() {
     check_paths(kernels);
     check_emitters(kernels);
     check_points(kernels);
-    check_surfels(kernels);
+    check_ellipses(kernels);
 }

@@ -116,27 +116,27 @@ inline void check_points(const Kernels& kernels) {
     });
 }
 
-inline void check_surfels(const Kernels& kernels) {
+inline void check_ellipses(const Kernels& kernels) {
     constexpr int count = 199;
-    all_sets("set_up_surfels", [&](Case& run) {
-        SurfelView view{.axial = {0, 0, -1, 3},
-                        .eye = {0, 0, 3},
-                        .towards_viewer = {0, 0, 1},
-                        .orthographic = run.set % 3 == 0,
-                        .width = 640,
-                        .height = 480,
-                        .near = 0.1f,
-                        .normal_from_mesh = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
-                        .world_from_mesh = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
+    all_sets("set_up_ellipses", [&](Case& run) {
+        EllipseView view{.axial = {0, 0, -1, 3},
+                         .eye = {0, 0, 3},
+                         .towards_viewer = {0, 0, 1},
+                         .orthographic = run.set % 3 == 0,
+                         .width = 640,
+                         .height = 480,
+                         .near = 0.1f,
+                         .normal_from_mesh = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
+                         .world_from_mesh = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}};
         set_view(view.clip_from_mesh);
-        const SurfelBatch batch{
-            .vectors = run.floats(SurfelBatch::components * count + stream_alignment, -0.4f, 0.4f),
+        const EllipseBatch batch{
+            .vectors = run.floats(EllipseBatch::components * count + stream_alignment, -0.4f, 0.4f),
             .count = count,
             .view = &view};
         auto* kept = run.output<int32_t>(1 + count, Kind::bits);
-        auto* ellipses = run.output<float>(count * int(SurfelEllipse<float>::members), Kind::floats);
-        SurfelScreen screen;
-        kept[0] = kernels.set_up_surfels(batch, screen);
+        auto* ellipses = run.output<float>(count * int(ProjectedEllipse<float>::members), Kind::floats);
+        EllipseScreen screen;
+        kept[0] = kernels.set_up_ellipses(batch, screen);
         for (int i = 0; i < kept[0]; ++i) {
             kept[1 + i] = screen.kept[i];
             for (const auto& member : screen.ellipses) *ellipses++ = member[screen.kept[i]];

@@ -51,7 +51,7 @@ TEST(SurfelBatches, HoldEachSurfelOnce) {
     for (size_t i = 0; i < 1000; ++i) {
         const uint32_t vertex = made.vertex_of(i);
         vertices.insert(vertex);
-        const native::SurfelVectors<float> vectors = made.vectors_of(i);
+        const native::EllipseVectors<float> vectors = made.vectors_of(i);
         const SurfelAxes axes = surfel_axes(mesh, vertex, Vec3::Zero(), 0.1f, 1.5f);
         const Vec3 p(vectors.p), t(vectors.t), b(vectors.b), n(vectors.n);
         ASSERT_EQ(p, Vec3(mesh.V.row(vertex)));
@@ -78,14 +78,14 @@ TEST(SurfelBatches, AreNotMadeOfSurfelsThatTurnWithTheViewer) {
 }
 
 /// A camera at (0.3, 0.2, z) that looks along -z.
-native::SurfelView view_from(float z, bool orthographic) {
+native::EllipseView view_from(float z, bool orthographic) {
     Mat4 clip = Mat4::Zero(), away = Mat4::Identity();
     clip(0, 0) = 1.5f;
     clip(1, 1) = 2;
     clip(2, 3) = 0.1f;
     clip(3, orthographic ? 3 : 2) = orthographic ? 1.0f : -1.0f;
     away.col(3) << -0.3f, -0.2f, -z, 1;
-    native::SurfelView view;
+    native::EllipseView view;
     Eigen::Map<Mat4>(view.clip_from_mesh[0]) = clip * away;
     Eigen::Map<Vec4>(view.axial) << 0, 0, -1, z;
     Eigen::Map<Vec3>(view.eye) << 0.3f, 0.2f, z;
@@ -112,19 +112,19 @@ TEST(SurfelBatches, AreProjectedAsOneByOne) {
         for (const bool orthographic : {false, true})
             for (const float z : {4.0f, 1.2f, 0.9f, -3.0f}) {
                 native::use_instruction_set(name);
-                const native::SurfelView view = view_from(z, orthographic);
+                const native::EllipseView view = view_from(z, orthographic);
                 size_t found = 0, in_batches = 0;
                 for (size_t i = 0; i < batches.count(); ++i) {
-                    native::SurfelBatch batch = batches.batch(i);
+                    native::EllipseBatch batch = batches.batch(i);
                     batch.view = &view;
-                    native::SurfelScreen screen;
-                    const int kept = native::set_up_surfels(batch, screen);
+                    native::EllipseScreen screen;
+                    const int kept = native::set_up_ellipses(batch, screen);
                     in_batches += size_t(kept);
                     int next = 0;
                     for (int k = 0; k < batch.count; ++k) {
-                        native::SurfelEllipse<float> ellipse;
+                        native::ProjectedEllipse<float> ellipse;
                         const auto vectors = batches.vectors_of(SurfelBatches::most * i + size_t(k));
-                        if (!native::project_surfel(view, vectors, ellipse)) continue;
+                        if (!native::project_ellipse(view, vectors, ellipse)) continue;
                         ++found;
                         ASSERT_LT(next, kept);
                         ASSERT_EQ(screen.kept[next++], k) << name << z << orthographic;

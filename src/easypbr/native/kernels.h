@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "easypbr/native/surfel_ellipse.h"
+#include "easypbr/native/ellipse_projection.h"
 #include "easypbr/native/views.h"
 #include "native/shader_list.h"
 
@@ -267,22 +267,22 @@ struct PointScreen {
     uint16_t kept[room];  ///< those inside of what is drawn, in their order
 };
 
-/// Surfels that are neighbours, on their way to the screen.
-struct SurfelBatch {
-    static constexpr int most_surfels = 256;
+/// Ellipses in space that are neighbours, on their way to the screen.
+struct EllipseBatch {
+    static constexpr int most_ellipses = 256;
     static constexpr int components = 12;
 
-    const float* vectors = nullptr;  ///< all x of SurfelVectors::p, all y, ... all z of n
+    const float* vectors = nullptr;  ///< all x of EllipseVectors::p, all y, ... all z of n
     int count = 0;
-    const SurfelView* view = nullptr;
+    const EllipseView* view = nullptr;
 };
 
-/// The surfels on the screen. Lanes beyond the last are written.
-struct SurfelScreen {
-    static constexpr int room = SurfelBatch::most_surfels + 16;
+/// The ellipses on the screen. Lanes beyond the last are written.
+struct EllipseScreen {
+    static constexpr int room = EllipseBatch::most_ellipses + 16;
 
-    alignas(64) float ellipses[SurfelEllipse<float>::members][room];  ///< in the order of all()
-    uint16_t kept[room];                                              ///< those that are seen, in their order
+    alignas(64) float ellipses[ProjectedEllipse<float>::members][room];  ///< in the order of all()
+    uint16_t kept[room];  ///< those that are seen, in their order
 };
 
 /// Random numbers of `count` paths and at most stream_alignment - 1 more, in [0, 1): a point of a dimension
@@ -402,8 +402,8 @@ using ChancesOfEmitters = void (*)(const FewEmitters& emitters, const float* con
 
 /// The number of points that are kept.
 using SetUpPoints = int (*)(const PointBatch& points, PointScreen& screen);
-/// The number of surfels that are kept.
-using SetUpSurfels = int (*)(const SurfelBatch& surfels, SurfelScreen& screen);
+/// The number of ellipses that are kept.
+using SetUpEllipses = int (*)(const EllipseBatch& ellipses, EllipseScreen& screen);
 
 /// The number of faces that are kept; negative where a vertex would have to be clipped, or the cluster is
 /// 128 pixels large.
@@ -430,7 +430,7 @@ struct Kernels {
     BlendSplats blend_splats;
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
-    SetUpSurfels set_up_surfels;
+    SetUpEllipses set_up_ellipses;
     AddNoisyRow add_noisy_row;
     FindMapPlaces find_map_places;
     FindMapDirections find_map_directions;

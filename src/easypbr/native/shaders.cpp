@@ -272,8 +272,8 @@ int set_up_points(const PointBatch& points, PointScreen& screen) {
     return chosen_set().kernels->set_up_points(points, screen);
 }
 
-int set_up_surfels(const SurfelBatch& surfels, SurfelScreen& screen) {
-    return chosen_set().kernels->set_up_surfels(surfels, screen);
+int set_up_ellipses(const EllipseBatch& ellipses, EllipseScreen& screen) {
+    return chosen_set().kernels->set_up_ellipses(ellipses, screen);
 }
 
 void find_map_places(const float (&rotation)[3][3], const float* const (&directions)[3], int count, float* u,

@@ -86,8 +86,8 @@ int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 /// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.
 int set_up_points(const PointBatch& points, PointScreen& screen);
 
-/// Projects the surfels of a batch and finds which are seen, as project_surfel(). On the calling thread.
-int set_up_surfels(const SurfelBatch& surfels, SurfelScreen& screen);
+/// Projects the ellipses of a batch and finds which are seen, as project_ellipse(). On the calling thread.
+int set_up_ellipses(const EllipseBatch& ellipses, EllipseScreen& screen);
 
 /// Places in equirectangular maps and directions, as FindMapPlaces and FindMapDirections. On the calling
 /// thread.

@@ -33,13 +33,13 @@ struct Fragment : TextureReader {
 #include "easypbr/native/simd/blend_splats.h"
 #include "easypbr/native/simd/camera_places.h"
 #include "easypbr/native/simd/cluster_setup.h"
+#include "easypbr/native/simd/ellipse_setup.h"
 #include "easypbr/native/simd/map_directions.h"
 #include "easypbr/native/simd/noisy_rows.h"
 #include "easypbr/native/simd/point_setup.h"
 #include "easypbr/native/simd/sample_emitters.h"
 #include "easypbr/native/simd/sample_paths.h"
 #include "easypbr/native/simd/shade_hits.h"
-#include "easypbr/native/simd/surfel_setup.h"
 
 namespace easypbr::native::EASYPBR_ISA {
 namespace {
@@ -333,7 +333,7 @@ const Kernels kernels{resolve_triangles,
                       blend_splats,
                       set_up_cluster,
                       set_up_points,
-                      set_up_surfels,
+                      set_up_ellipses,
                       add_noisy_row,
                       find_map_places,
                       find_map_directions,

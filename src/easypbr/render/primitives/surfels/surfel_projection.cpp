@@ -19,7 +19,7 @@ void copy_to(const Vec3& from, float (&to)[3]) {
 }
 
 /// Around the surfels of a batch.
-SurfelBatches::Sphere sphere_of_batch(const native::SurfelBatch& batch) {
+SurfelBatches::Sphere sphere_of_batch(const native::EllipseBatch& batch) {
     Box3 box;
     float longest = 0;
     for (int i = 0; i < batch.count; ++i) {
@@ -62,7 +62,7 @@ SurfelBatches::SurfelBatches(const MeshData& mesh, float radius, float scale) {
     vectors_.resize(components * all + most);
     spheres_.resize((all + most - 1) / most);
     parallel_for(spheres_.size(), 64, [&](size_t i) {
-        const native::SurfelBatch own = batch(i);
+        const native::EllipseBatch own = batch(i);
         float* const to = vectors_.data() + components * most * i;
         for (int k = 0; k < own.count; ++k) {
             const auto vertex = Eigen::Index(vertices_[most * i + size_t(k)]);
@@ -75,15 +75,15 @@ SurfelBatches::SurfelBatches(const MeshData& mesh, float radius, float scale) {
     });
 }
 
-native::SurfelBatch SurfelBatches::batch(size_t i) const {
+native::EllipseBatch SurfelBatches::batch(size_t i) const {
     const size_t first = most * i;
     return {vectors_.data() + components * first, int(std::min(most, vertices_.size() - first))};
 }
 
-native::SurfelVectors<float> SurfelBatches::vectors_of(size_t surfel) const {
-    const native::SurfelBatch own = batch(surfel / most);
+native::EllipseVectors<float> SurfelBatches::vectors_of(size_t surfel) const {
+    const native::EllipseBatch own = batch(surfel / most);
     const float* from = own.vectors + surfel % most;
-    native::SurfelVectors<float> vectors;
+    native::EllipseVectors<float> vectors;
     for (auto* const vector : {&vectors.p, &vectors.t, &vectors.b, &vectors.n})
         for (float& number : *vector) {
             number = *from;
@@ -123,12 +123,12 @@ SurfelProjector::SurfelProjector(const DrawItem& item, const Frame& frame, doubl
     view_.world_scale = T.linear().col(0).cast<float>().norm();
 }
 
-native::SurfelVectors<float> SurfelProjector::vectors_of(Eigen::Index vertex) const {
+native::EllipseVectors<float> SurfelProjector::vectors_of(Eigen::Index vertex) const {
     const MeshData& mesh = item_->mesh();
     const Vec3 to_viewer = view_.orthographic ? Vec3(Eigen::Map<const Vec3>(view_.towards_viewer))
                                               : Eigen::Map<const Vec3>(view_.eye) - Vec3(mesh.V.row(vertex));
     const SurfelAxes axes = surfel_axes(mesh, vertex, to_viewer, radius_, item_->style.surfel_scale);
-    native::SurfelVectors<float> vectors;
+    native::EllipseVectors<float> vectors;
     copy_to(mesh.V.row(vertex), vectors.p);
     copy_to(axes.t, vectors.t);
     copy_to(axes.b, vectors.b);
@@ -138,7 +138,7 @@ native::SurfelVectors<float> SurfelProjector::vectors_of(Eigen::Index vertex) co
 
 std::optional<SurfelProjection> SurfelProjector::project(size_t surfel) const {
     SurfelProjection projection;
-    const bool is_seen = native::project_surfel(
+    const bool is_seen = native::project_ellipse(
         view_, batches_ ? batches_->vectors_of(surfel) : vectors_of(Eigen::Index(surfel)), projection);
     return is_seen ? std::optional(projection) : std::nullopt;
 }

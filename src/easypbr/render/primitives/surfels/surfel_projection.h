@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/ellipse_projection.h"
 #include "easypbr/native/shaders.h"
-#include "easypbr/native/surfel_ellipse.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/raster/batch_cache.h"
@@ -17,7 +17,7 @@
 
 namespace easypbr::render {
 
-struct SurfelProjection : native::SurfelEllipse<float> {
+struct SurfelProjection : native::ProjectedEllipse<float> {
     /// Of a pixel's centre: the squared radius in the ellipse, above 1 outside, and the axial distance.
     struct Hit {
         float r2, z;
@@ -52,7 +52,7 @@ SurfelAxes surfel_axes(const MeshData& mesh, Eigen::Index i, const Vec3& towards
 /// Surfels that do not turn with the viewer, in batches of neighbours.
 class SurfelBatches {
   public:
-    static constexpr size_t most = native::SurfelBatch::most_surfels;
+    static constexpr size_t most = native::EllipseBatch::most_ellipses;
 
     /// On all cores. Empty where a surfel has no normal: it faces the viewer.
     SurfelBatches(const MeshData& mesh, float radius, float scale);
@@ -60,10 +60,10 @@ class SurfelBatches {
     /// Of batches.
     size_t count() const { return spheres_.size(); }
     bool empty() const { return spheres_.empty(); }
-    native::SurfelBatch batch(size_t i) const;
+    native::EllipseBatch batch(size_t i) const;
     /// The vertex that a surfel is; surfels are numbered through all batches.
     uint32_t vertex_of(size_t surfel) const { return vertices_[surfel]; }
-    native::SurfelVectors<float> vectors_of(size_t surfel) const;
+    native::EllipseVectors<float> vectors_of(size_t surfel) const;
     /// Around all that they cover; infinite where one is not finite.
     struct Sphere {
         Vec3 center;
@@ -72,7 +72,7 @@ class SurfelBatches {
     const Sphere& sphere_of(size_t batch) const { return spheres_[batch]; }
 
   private:
-    static constexpr size_t components = native::SurfelBatch::components;
+    static constexpr size_t components = native::EllipseBatch::components;
 
     std::vector<uint32_t> vertices_;
     std::vector<float> vectors_;
@@ -116,11 +116,11 @@ class SurfelProjector {
     void prefetch(size_t surfel) const;
 
   private:
-    native::SurfelVectors<float> vectors_of(Eigen::Index vertex) const;
+    native::EllipseVectors<float> vectors_of(Eigen::Index vertex) const;
 
     const DrawItem* item_;
     const SurfelBatches* batches_;
-    native::SurfelView view_;
+    native::EllipseView view_;
     float radius_;
 };
 
@@ -136,13 +136,13 @@ void SurfelProjector::project_all(const Visit& visit) const {
     const Vec2i size(int(view_.width), int(view_.height));
     const Frustum frustum(Eigen::Map<const Mat4>(view_.clip_from_mesh[0]), size, {0, 0, size.x(), size.y()});
     parallel_chunks(batches_->count(), grain / SurfelBatches::most, [&](size_t begin, size_t end) {
-        native::SurfelScreen screen;
+        native::EllipseScreen screen;
         for (size_t i = begin; i < end; ++i) {
             const SurfelBatches::Sphere& sphere = batches_->sphere_of(i);
             if (frustum.drops(sphere.center, sphere.radius)) continue;
-            native::SurfelBatch batch = batches_->batch(i);
+            native::EllipseBatch batch = batches_->batch(i);
             batch.view = &view_;
-            const int kept = native::set_up_surfels(batch, screen);
+            const int kept = native::set_up_ellipses(batch, screen);
             for (int k = 0; k < kept; ++k) {
                 const int at = screen.kept[k];
                 SurfelProjection projection;

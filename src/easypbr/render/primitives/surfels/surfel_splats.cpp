@@ -79,7 +79,7 @@ void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, const Sur
     program.set("u_eye", Vec3(eye.cast<float>()));
     program.set("u_surfel", Vec4(item.style.surfel_scale, float(spacing_of(item)), float(frame.camera.near),
                                  float(T.linear().col(0).norm())));
-    program.set("u_least_radius", native::least_surfel_radius);
+    program.set("u_least_radius", native::least_ellipse_radius);
     program.set("u_pixel", float(2 / (frame.clip_from_view(1, 1) * frame.size.y())));
     program.set("u_material", Vec3(m.metallic, m.roughness, code_of(item.kind)));
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);

@@ -1,20 +1,20 @@
-// The setup of a batch of surfels: their ellipses on the screen, and which of them are seen.
+// The setup of a batch of ellipses in space: where they are on the screen, and which of them are seen.
 #pragma once
 
+#include "easypbr/native/ellipse_projection.h"
 #include "easypbr/native/simd/cluster_setup.h"
-#include "easypbr/native/surfel_ellipse.h"
 
 namespace easypbr::native::EASYPBR_ISA {
 
-inline int set_up_surfels(const SurfelBatch& batch, SurfelScreen& screen) {
+inline int set_up_ellipses(const EllipseBatch& batch, EllipseScreen& screen) {
     int count = 0;
     for (int first = 0; first < batch.count; first += lanes) {
-        SurfelVectors<vfloat> vectors;
+        EllipseVectors<vfloat> vectors;
         vfloat* const of_place[4] = {vectors.p, vectors.t, vectors.b, vectors.n};
-        for (int i = 0; i < SurfelBatch::components; ++i)
+        for (int i = 0; i < EllipseBatch::components; ++i)
             of_place[i / 3][i % 3] = load<Floats>(batch.vectors + i * batch.count + first);
-        SurfelEllipse<vfloat> ellipse;
-        const vbool seen = project_surfel(*batch.view, vectors, ellipse);
+        ProjectedEllipse<vfloat> ellipse;
+        const vbool seen = project_ellipse(*batch.view, vectors, ellipse);
         const auto members = ellipse.all();
         for (size_t i = 0; i < members.size(); ++i)
             std::memcpy(screen.ellipses[i] + first, &members[i]->v, sizeof members[i]->v);

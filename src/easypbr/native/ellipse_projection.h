@@ -1,5 +1,5 @@
-// The ellipse of a surfel on the screen: of one, or of one in each lane of a vector. All functions are
-// inlined, so that no instruction set's copy stands for the others.
+// Ellipses in space on the screen: one, or one in each lane of a vector. All functions are inlined, so that no
+// instruction set's copy stands for the others.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ namespace easypbr::native {
 
 /// No splat gets smaller than a pixel-sized square, which holds exactly one pixel's centre: the screen-space
 /// filter of EWA splatting as Botsch et al. 2005 approximate it, made no larger than it has to be.
-inline constexpr float least_surfel_radius = 0.5f;
+inline constexpr float least_ellipse_radius = 0.5f;
 
-/// How surfels are looked at.
-struct SurfelView {
+/// How ellipses in space are looked at.
+struct EllipseView {
     float clip_from_mesh[4][4] = {};  ///< [column][row]
     float axial[4] = {};              ///< times a place of the mesh, and 1: the axial distance
     float eye[3] = {};                ///< in the mesh's frame
@@ -31,12 +31,12 @@ struct SurfelView {
     float normal_from_mesh[3][3] = {}, world_from_mesh[3][3] = {};  ///< [column][row]
 };
 
-/// A surfel at p with semi-axes t and b covers the points p + u t + v b with u^2 + v^2 <= 1. Homogeneous
+/// An ellipse at p with semi-axes t and b covers the points p + u t + v b with u^2 + v^2 <= 1. Homogeneous
 /// pixel coordinates relative to the centre's are linear in (u, v, 1), so that the inverse of a 3 x 3 matrix
 /// takes a pixel back to (u, v), right under perspective (Sigg et al. 2006, "GPU-Based Ray-Casting of
 /// Quadratic Surfaces").
 template <class Number>
-struct SurfelEllipse {
+struct ProjectedEllipse {
     static constexpr size_t members = 22;
 
     Number centre_x, centre_y;  ///< pixels
@@ -45,7 +45,7 @@ struct SurfelEllipse {
     Number z_t, z_b, z_c;       ///< axial distance is z_c + u z_t + v z_b
     Number x0, x1, y0, y1;      ///< box, pixels, relative to nothing
     Number per_least;           ///< one over half the side of the smallest square it covers, pixels
-    Number band;                ///< surfels that deep behind the nearest are blended with it
+    Number band;                ///< others that deep behind the nearest are blended with it
     Number normal[3];           ///< in world space, towards the viewer, of any length
 
     std::array<Number*, members> all() {
@@ -55,13 +55,13 @@ struct SurfelEllipse {
     }
 };
 
-/// Of a surfel in the mesh's frame.
+/// Of an ellipse in the mesh's frame.
 template <class Number>
-struct SurfelVectors {
+struct EllipseVectors {
     Number p[3], t[3], b[3], n[3];  ///< place, semi-axes, normal
 };
 
-namespace surfel_math {
+namespace ellipse_math {
 
 EASYPBR_INLINE float select(bool condition, float a, float b) {
     return condition ? a : b;
@@ -87,22 +87,22 @@ EASYPBR_INLINE Number length(const Number (&a)[3]) {
     return sqrt(dot(a, a));
 }
 
-/// Half the side of the smallest square of a surfel whose normal has the cosine `facing` to the direction
+/// Half the side of the smallest square of an ellipse whose normal has the cosine `facing` to the direction
 /// towards the viewer. Those that turn away lie just behind the rim of closed surfaces, which they would make
 /// ragged: seen edge-on they need no pixel of their own.
 template <class Number>
 EASYPBR_INLINE Number least_radius(Number facing) {
-    const Number turned = larger(Number(1e-3f), (Number(0.0f) - facing) * Number(least_surfel_radius));
-    return select(facing < Number(0.0f), turned, Number(least_surfel_radius));
+    const Number turned = larger(Number(1e-3f), (Number(0.0f) - facing) * Number(least_ellipse_radius));
+    return select(facing < Number(0.0f), turned, Number(least_ellipse_radius));
 }
 
-}  // namespace surfel_math
+}  // namespace ellipse_math
 
-/// The ellipse; false for a surfel before the near plane or outside of the picture.
+/// The ellipse; false for one before the near plane or outside of the picture.
 template <class Number>
-EASYPBR_INLINE auto project_surfel(const SurfelView& view, const SurfelVectors<Number>& s,
-                                   SurfelEllipse<Number>& to) {
-    using namespace surfel_math;
+EASYPBR_INLINE auto project_ellipse(const EllipseView& view, const EllipseVectors<Number>& s,
+                                    ProjectedEllipse<Number>& to) {
+    using namespace ellipse_math;
     const auto& m = view.clip_from_mesh;
     const Number zero = 0.0f, one = 1.0f, half = 0.5f;
     const auto clip = [&](int row, const Number(&v)[3]) __attribute__((always_inline)) {
