@@ -274,9 +274,10 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     };
     const auto colors = [&](int x, int y) {
         std::array<const void*, 8> read;
-        for (int i = 0; i < 4; ++i) {
-            read[size_t(i)] = pixels.radiance.at(x + i * quarter, y);
-            read[size_t(4 + i)] = pixels.emission.at(x + i * quarter, y);
+        for (size_t i = 0; i < 4; ++i) {
+            const int column = x + int(i) * quarter;
+            read[i] = pixels.radiance.at(column, y);
+            read[4 + i] = pixels.emission.at(column, y);
         }
         return read;
     };
