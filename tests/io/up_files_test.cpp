@@ -80,6 +80,14 @@ TEST(FrontOfFiles, SurvivesMergingAndTurning) {
     EXPECT_EQ(merged(std::vector{one, other}).front, Vec3d(0, 0, 0));
 }
 
+TEST(FrontOfFiles, IsThatOfTheScanner) {
+    REQUIRE_TEST_DATA();
+    EXPECT_EQ(io::load_mesh(test_data("clouds/room_rgb.pcd")).snapshot()->front, Vec3d(0, 0, -1));
+    const Vec3d scanner = io::load_mesh(test_data("misc/rangemap.ply")).snapshot()->front;
+    EXPECT_GT(scanner.z(), 0.99) << scanner.transpose();
+    EXPECT_EQ(io::load_mesh(test_data("bunny.ply")).snapshot()->front, Vec3d(0, 0, 0));
+}
+
 TEST(UpOfFiles, LetsScansStand) {
     REQUIRE_TEST_DATA();
     EXPECT_EQ(up_of_file("clouds/lion.ply"), "+z");

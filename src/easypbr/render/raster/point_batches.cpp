@@ -7,7 +7,6 @@
 #include "easypbr/render/raster/curve_order.h"
 
 namespace easypbr::render {
-namespace {
 
 PointBatches::Sphere sphere_around(const float* points, int count) {
     Box3 box;
@@ -18,8 +17,6 @@ PointBatches::Sphere sphere_around(const float* points, int count) {
     }
     return {box.center(), box.diagonal().norm() / 2};
 }
-
-}  // namespace
 
 PointBatches::PointBatches(const Array3f& V)
     : ids_(curve_order(V, size_t(V.rows()), [](size_t i) { return i; })) {

@@ -38,6 +38,9 @@ class PointBatches {
     std::vector<Sphere> spheres_;
 };
 
+/// Around points: all x, all y, all z. Infinite where one is not finite.
+PointBatches::Sphere sphere_around(const float* points, int count);
+
 /// The batches of clouds, by the revision of their points.
 class BatchedClouds {
   public:

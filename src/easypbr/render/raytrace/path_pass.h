@@ -44,8 +44,8 @@ class PathPass {
     void trace_block(const Pixels& pixels, const PixelRect& block);
     /// Adds what fireflies_ spreads.
     void spread_fireflies(const Pixels& pixels);
-    /// What rays find of pixels whose surfaces the G-buffer does not hold all of: notes them, and adds those of
-    /// which they find nothing to `others`.
+    /// What rays find of pixels whose surfaces the G-buffer does not hold all of: notes them, and adds those
+    /// of which they find nothing to `others`.
     std::vector<PathTracer::Hit> hits_of(const Pixels& pixels, Block& extended, std::vector<bool>& is_hit,
                                          Block& others) const;
     /// What surfaces that catch shadows get, by the pixels' index among `count`.
@@ -69,7 +69,8 @@ class PathPass {
     static_assert(sizeof(Caught) == 12, "there is one for each pixel of a ground");
     class CaughtTile;
     /// Calls visit(x, y, index, kind, caught) for the pixels of a block of whole tiles that paths start from,
-    /// tile by tile: index in the block, the surface's code, CaughtTile&.
+    /// tile by tile: index in the block, the surface's code, CaughtTile&. What read(left, y) names of a
+    /// tile's row is fetched ahead.
     template <class Read, class Visit>
     void each_traced(const Pixels& pixels, const PixelRect& block, Read&& read, Visit&& visit);
 

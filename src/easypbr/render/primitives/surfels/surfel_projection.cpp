@@ -20,21 +20,17 @@ void copy_to(const Vec3& from, float (&to)[3]) {
 
 /// Around the surfels of a batch.
 SurfelBatches::Sphere sphere_of_batch(const native::EllipseBatch& batch) {
-    Box3 box;
+    SurfelBatches::Sphere sphere = sphere_around(batch.vectors, batch.count);
     float longest = 0;
-    for (int i = 0; i < batch.count; ++i) {
-        const auto at = [&](int vector) {
+    for (int i = 0; i < batch.count; ++i)
+        for (int vector = 1; vector < 3; ++vector) {
             const float* const from = batch.vectors + 3 * vector * batch.count + i;
-            return Vec3(from[0], from[batch.count], from[2 * batch.count]);
-        };
-        const Vec3 p = at(0);
-        const float axis = std::max(at(1).norm(), at(2).norm());
-        if (!p.allFinite() || !std::isfinite(axis))
-            return {Vec3::Zero(), std::numeric_limits<float>::infinity()};
-        box.extend(p);
-        longest = std::max(longest, axis);
-    }
-    return {box.center(), box.diagonal().norm() / 2 + longest};
+            const float length = Vec3(from[0], from[batch.count], from[2 * batch.count]).norm();
+            if (!std::isfinite(length)) return {Vec3::Zero(), std::numeric_limits<float>::infinity()};
+            longest = std::max(longest, length);
+        }
+    sphere.radius += longest;
+    return sphere;
 }
 
 }  // namespace

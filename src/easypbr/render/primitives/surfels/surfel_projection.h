@@ -14,6 +14,7 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/raster/batch_cache.h"
 #include "easypbr/render/raster/culling.h"
+#include "easypbr/render/raster/point_batches.h"
 
 namespace easypbr::render {
 
@@ -65,10 +66,7 @@ class SurfelBatches {
     uint32_t vertex_of(size_t surfel) const { return vertices_[surfel]; }
     native::EllipseVectors<float> vectors_of(size_t surfel) const;
     /// Around all that they cover; infinite where one is not finite.
-    struct Sphere {
-        Vec3 center;
-        float radius;
-    };
+    using Sphere = PointBatches::Sphere;
     const Sphere& sphere_of(size_t batch) const { return spheres_[batch]; }
 
   private:
