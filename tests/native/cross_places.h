@@ -79,10 +79,17 @@ inline void check_clusters(const Kernels& kernels) {
         auto* count = run.output<int32_t>(1, Kind::bits);
         auto* kept = run.output<uint8_t>(faces, Kind::bits);
         auto* depths = run.output<float>(vertices, Kind::floats);
+        auto* extent = run.output<int32_t>(4, Kind::bits);
+        auto* nearest = run.output<float>(1, Kind::floats);
         ClusterScreen screen;
+        *count = -1;
+        if (!kernels.project_cluster(cluster, screen)) return;
+        std::copy_n(screen.depth, vertices, depths);
+        const int32_t found[] = {screen.left, screen.top, screen.right, screen.bottom};
+        std::copy_n(found, 4, extent);
+        *nearest = screen.nearest;
         *count = kernels.set_up_cluster(cluster, screen);
         if (*count > 0) std::memcpy(kept, screen.kept, size_t(*count));
-        if (*count >= 0) std::copy_n(screen.depth, vertices, depths);
     });
 }
 

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,6 +13,7 @@
 #include "easypbr/render/raster/visibility.h"
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/mesh.h"
+#include "shuffled_mesh.h"
 
 namespace easypbr::render::face_clusters_test {
 namespace {
@@ -23,18 +22,6 @@ const Vec2i size(160, 120);
 
 MeshPart all_of(const MeshData& mesh) {
     return {.name = {}, .first_face = 0, .face_count = int(mesh.F.rows())};
-}
-
-/// The same faces in another order.
-MeshData shuffled(const MeshData& mesh, unsigned seed) {
-    std::vector<Eigen::Index> order(size_t(mesh.F.rows()));
-    std::iota(order.begin(), order.end(), Eigen::Index(0));
-    std::ranges::shuffle(order, std::mt19937(seed));
-    Array3i::Dense F(mesh.F.rows(), 3);
-    for (size_t i = 0; i < order.size(); ++i) F.row(Eigen::Index(i)) = mesh.F.row(order[i]);
-    MeshData other = mesh;
-    other.F = std::move(F);
-    return other;
 }
 
 /// A view from a place, near plane and all, towards the middle.

@@ -205,8 +205,12 @@ bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3
 
 Box3d box_of(const Array3f& V) {
     if (V.empty()) return {};
-    return {Vec3d(V.colwise().minCoeff().transpose().cast<double>()),
-            Vec3d(V.colwise().maxCoeff().transpose().cast<double>())};
+    Box3d box;
+    for (int k = 0; k < 3; ++k) {
+        box.min()[k] = double(V.col(k).minCoeff<Eigen::PropagateNumbers>());
+        box.max()[k] = double(V.col(k).maxCoeff<Eigen::PropagateNumbers>());
+    }
+    return box;
 }
 
 bool beyond_near_plane(const Camera& camera, const Eigen::Affine3d& T_world_mesh, const Box3d& box) {

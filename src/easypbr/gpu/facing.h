@@ -16,7 +16,7 @@ bool is_closed_outward(const Array3f& V, const Array3i& F);
 /// True when every given vertex normal is on the same side as the winding of the faces around it.
 bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3i& F);
 
-/// The box of the vertices.
+/// The box of the vertices, without coordinates that are not numbers.
 Box3d box_of(const Array3f& V);
 
 /// Whether all of a box lies before the camera, beyond its near plane. Else the camera may be within what the

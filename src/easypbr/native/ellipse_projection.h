@@ -1,5 +1,5 @@
-// Ellipses in space on the screen: one, or one in each lane of a vector. All functions are inlined, so that no
-// instruction set's copy stands for the others.
+// Ellipses in space on the screen: one, or one in each lane of a vector. All functions are inlined, so that
+// no instruction set's copy stands for the others.
 #pragma once
 
 #include <array>

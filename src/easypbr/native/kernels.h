@@ -240,7 +240,9 @@ struct ClusterScreen {
     alignas(64) int32_t x[room], y[room];  ///< 1/256 of a pixel, y downwards
     alignas(64) float depth[room];         ///< reversed
     alignas(64) int32_t packed[room];
-    uint8_t kept[room];  ///< faces, in their order
+    int32_t left, top, right, bottom;  ///< what the vertices cover, 1/256 of a pixel
+    float nearest;                     ///< the largest of the depths
+    uint8_t kept[room];                ///< faces, in their order
 };
 
 /// Points that are neighbours, on their way to the screen: see render::PointSplats.
@@ -405,8 +407,9 @@ using SetUpPoints = int (*)(const PointBatch& points, PointScreen& screen);
 /// The number of ellipses that are kept.
 using SetUpEllipses = int (*)(const EllipseBatch& ellipses, EllipseScreen& screen);
 
-/// The number of faces that are kept; negative where a vertex would have to be clipped, or the cluster is
-/// 128 pixels large.
+/// Finds all but the faces that are kept; false where a vertex would have to be clipped.
+using ProjectCluster = bool (*)(const ClusterFaces& faces, ClusterScreen& screen);
+/// Of a cluster that is projected: the number of faces that are kept; negative where it is 128 pixels large.
 using SetUpCluster = int (*)(const ClusterFaces& faces, ClusterScreen& screen);
 
 /// Shaders of pictures: those of cmake/native.cmake.
@@ -428,6 +431,7 @@ struct Kernels {
     ShadeHits shade_hits;
     DrawLines draw_lines;
     BlendSplats blend_splats;
+    ProjectCluster project_cluster;
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
     SetUpEllipses set_up_ellipses;

@@ -264,6 +264,10 @@ void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
     chosen_set().kernels->blend_splats(tile, splats.data(), places.data(), places.size());
 }
 
+bool project_cluster(const ClusterFaces& faces, ClusterScreen& screen) {
+    return chosen_set().kernels->project_cluster(faces, screen);
+}
+
 int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen) {
     return chosen_set().kernels->set_up_cluster(faces, screen);
 }

@@ -79,8 +79,11 @@ void draw_lines(const Inputs& inputs, const Region& region, std::span<const Scre
 void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
                   std::span<const uint32_t> places);
 
-/// Projects the vertices of a cluster and finds which of its faces may cover the centre of a pixel; see
-/// SetUpCluster. On the calling thread.
+/// Projects the vertices of a cluster; see ProjectCluster. On the calling thread.
+bool project_cluster(const ClusterFaces& faces, ClusterScreen& screen);
+
+/// Finds which faces of a projected cluster may cover the centre of a pixel; see SetUpCluster. On the calling
+/// thread.
 int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 
 /// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.

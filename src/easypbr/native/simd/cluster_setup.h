@@ -47,17 +47,19 @@ INLINE int largest_of(vint a) {
     return largest;
 }
 
-/// What a cluster covers, in 1/256 of a pixel.
-struct ClusterExtent {
-    int left, top, right, bottom;
-};
+INLINE float largest_of(vfloat a) {
+    float largest = a.v[0];
+    for (int k = 1; k < lanes; ++k) largest = a.v[k] > largest ? a.v[k] : largest;
+    return largest;
+}
 
 /// Projects the vertices as TriangleRaster does, to the same bits. False where one has to be clipped.
-INLINE bool project(const ClusterFaces& c, ClusterScreen& screen, ClusterExtent& extent) {
+inline bool project_cluster(const ClusterFaces& c, ClusterScreen& screen) {
     const auto& m = c.clip_from_mesh;
     const float subpixels = float(1 << ClusterFaces::subpixel_bits), guard = ClusterFaces::guard_band;
     vbool inside = true;
     vint left = INT32_MAX, top = INT32_MAX, right = INT32_MIN, bottom = INT32_MIN;
+    vfloat nearest = 0.0f;
     for (int first = 0; first < c.vertex_count; first += lanes) {
         const vbool beyond = lane_numbers() + first >= c.vertex_count;
         vfloat p[3];
@@ -75,12 +77,17 @@ INLINE bool project(const ClusterFaces& c, ClusterScreen& screen, ClusterExtent&
         right = max(right, select(beyond, right, px));
         top = min(top, select(beyond, top, py));
         bottom = max(bottom, select(beyond, bottom, py));
+        nearest = max(nearest, select(beyond, nearest, depth));
         std::memcpy(screen.x + first, &px.v, sizeof px.v);
         std::memcpy(screen.y + first, &py.v, sizeof py.v);
         std::memcpy(screen.depth + first, &depth.v, sizeof depth.v);
     }
     if (any_lane(!inside)) return false;
-    extent = {least_of(left), least_of(top), largest_of(right), largest_of(bottom)};
+    screen.left = least_of(left);
+    screen.top = least_of(top);
+    screen.right = largest_of(right);
+    screen.bottom = largest_of(bottom);
+    screen.nearest = largest_of(nearest);
     return true;
 }
 
@@ -95,16 +102,11 @@ inline int set_up_cluster(const ClusterFaces& c, ClusterScreen& screen) {
     // Places relative to the cluster's fit into 15 bits, and areas into 31.
     constexpr int most_extent = (1 << 15) - 1;
     constexpr int bits = ClusterFaces::subpixel_bits, half = ClusterFaces::half_pixel;
-    ClusterExtent extent;
-    if (!project(c, screen, extent)) return -1;
-    const int left = (extent.left + half - 1) >> bits, right = (extent.right - half) >> bits,
-              top = (extent.top + half - 1) >> bits, bottom = (extent.bottom - half) >> bits;
-    if (left > c.right || right < c.left || top > c.bottom || bottom < c.top || left > right || top > bottom)
-        return 0;
-    if (extent.right - extent.left > most_extent || extent.bottom - extent.top > most_extent) return -1;
+    const int left = screen.left, top = screen.top;
+    if (screen.right - left > most_extent || screen.bottom - top > most_extent) return -1;
     for (int first = 0; first < c.vertex_count; first += lanes) {
-        const vint x = vint(load<Ints>(screen.x + first)) - extent.left,
-                   y = vint(load<Ints>(screen.y + first)) - extent.top, both = x | y << 16;
+        const vint x = vint(load<Ints>(screen.x + first)) - left,
+                   y = vint(load<Ints>(screen.y + first)) - top, both = x | y << 16;
         std::memcpy(screen.packed + first, &both.v, sizeof both.v);
     }
     int count = 0;
@@ -117,10 +119,10 @@ inline int set_up_cluster(const ClusterFaces& c, ClusterScreen& screen) {
         const vint doubled = (bx - ax) * (dy - ay) - (dx - ax) * (by - ay);
         vbool kept = lane_numbers() + first < c.face_count && doubled != 0;
         if (!c.both_sides) kept = kept && (c.mirrored ? doubled > 0 : doubled < 0);
-        const vint x0 = (min(min(ax, bx), dx) + (extent.left + half - 1)) >> bits,
-                   x1 = (max(max(ax, bx), dx) + (extent.left - half)) >> bits,
-                   y0 = (min(min(ay, by), dy) + (extent.top + half - 1)) >> bits,
-                   y1 = (max(max(ay, by), dy) + (extent.top - half)) >> bits;
+        const vint x0 = (min(min(ax, bx), dx) + (left + half - 1)) >> bits,
+                   x1 = (max(max(ax, bx), dx) + (left - half)) >> bits,
+                   y0 = (min(min(ay, by), dy) + (top + half - 1)) >> bits,
+                   y1 = (max(max(ay, by), dy) + (top - half)) >> bits;
         kept = kept && max(x0, c.left) <= min(x1, c.right) && max(y0, c.top) <= min(y1, c.bottom);
         for (unsigned waiting = lane_bits(kept); waiting != 0; waiting &= waiting - 1)
             screen.kept[count++] = uint8_t(first + __builtin_ctz(waiting));

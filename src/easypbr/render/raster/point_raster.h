@@ -65,17 +65,22 @@ class PointRaster {
     }
 
     /// Calls draw(depth, vertex, cover) for all points that project() finds inside, on all cores; cover(put)
-    /// calls put(column, line) as the function below does, for the whole area.
-    template <class Draw>
-    void draw_batches(const PointBatches& batches, const Draw& draw) const {
+    /// calls put(column, line) as the function below does, for the whole area. Batches are left out where
+    /// depths.hides(bounds).
+    template <class Draw, class Depths>
+    void draw_batches(const PointBatches& batches, const Draw& draw, Depths& depths) const {
         constexpr size_t grain = 16;
-        const Frustum beyond = frustum();
-        parallel_chunks(batches.count(), grain, [&](size_t begin, size_t end) {
+        const SphereCulling culling = sphere_culling();
+        const auto depth = [&](size_t i) {
+            return culling.depth(batches.sphere_of(i).center, batches.sphere_of(i).radius);
+        };
+        visit_near_to_far(batches.count(), grain, depth, [&](std::span<const uint32_t> near) {
             native::PointBatch own = batch();
             native::PointScreen screen;
-            for (size_t i = begin; i < end; ++i) {
+            NeighborsHidden hidden(depths);
+            for (const uint32_t i : near) {
                 const PointBatches::Sphere& sphere = batches.sphere_of(i);
-                if (beyond.drops(sphere.center, sphere.radius)) continue;
+                if (hidden.hides([&] { return culling.bounds(sphere.center, sphere.radius); })) continue;
                 own.points = batches.points_of(i);
                 own.count = batches.size_of(i);
                 const int kept = native::set_up_points(own, screen);
@@ -141,8 +146,8 @@ class PointRaster {
             for (int row = 0; row < 4; ++row) batch.clip_from_mesh[column][row] = m_(row, column);
         return batch;
     }
-    /// What no splat reaches into.
-    Frustum frustum() const {
+    /// Of spheres around points, whose splats reach out of them.
+    SphereCulling sphere_culling() const {
         const float wide = 0.5f * std::max(1.0f, splats_.y_per_x);
         const bool world = splats_.world_pixels > 0;
         const Vec2i size = (2 * half_size_).cast<int>();

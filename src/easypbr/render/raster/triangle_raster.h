@@ -48,8 +48,15 @@ class TriangleRaster {
     /// each pixel of each triangle, on all cores in any order, also for one pixel at once; every run of faces
     /// has a copy of `put` of its own. Returns false, without any call, when a vertex is before the near
     /// plane or so far outside of the picture that triangles would have to be clipped, and they do not.
+    /// No depth is larger than those of the triangle's vertices.
     template <class Put>
-    bool draw(const ScreenTriangles& triangles, const Put& put);
+    bool draw(const ScreenTriangles& triangles, const Put& put) {
+        NothingHides nothing;
+        return draw(triangles, put, nothing);
+    }
+    /// The same, without the clusters whose calls would not count, since depths.hides(bounds).
+    template <class Put, class Depths>
+    bool draw(const ScreenTriangles& triangles, const Put& put, Depths& depths);
     /// The same, but the calls for a pixel follow each other in the order of the faces: for what adds up.
     /// Every band of rows has a copy of `put` of its own.
     template <class Put>
@@ -92,9 +99,10 @@ class TriangleRaster {
     /// The depth in the plane through three vertices.
     struct Plane {
         const Vertex& a;
-        float slope_x, slope_y;
+        float slope_x, slope_y, nearest;
 
-        [[gnu::always_inline]] Plane(const Vertex& a_, const Vertex& b, const Vertex& c) : a(a_) {
+        [[gnu::always_inline]] Plane(const Vertex& a_, const Vertex& b, const Vertex& c)
+            : a(a_), nearest(std::max(std::max(a_.depth, b.depth), c.depth)) {
             const float bx = float(b.x - a.x), by = float(b.y - a.y), cx = float(c.x - a.x),
                         cy = float(c.y - a.y);
             const float inverse = 1 / (bx * cy - cx * by), db = b.depth - a.depth, dc = c.depth - a.depth;
@@ -104,7 +112,8 @@ class TriangleRaster {
         float at(int x, int y) const {
             const float depth = a.depth + slope_x * float(x * subpixel + half_pixel - a.x) +
                                 slope_y * float(y * subpixel + half_pixel - a.y);
-            return std::max(depth, 1e-30f);
+            // The slopes of slivers are far off.
+            return std::min(std::max(depth, least_depth), nearest);
         }
     };
 
@@ -164,11 +173,19 @@ class TriangleRaster {
     bool project(const ScreenTriangles& triangles);
     /// The same of clusters, none of which is drawn yet.
     bool needs_no_clipping(const ScreenTriangles& triangles, const ClusterCulling& culling) const;
-    template <class Put>
-    void draw_clusters(const ScreenTriangles& triangles, const ClusterCulling& culling, const Put& put) const;
-    template <class Put>
+    template <class Put, class Depths>
+    void draw_clusters(const ScreenTriangles& triangles, const ClusterCulling& culling, const Put& put,
+                       Depths& depths) const;
+    template <class Put, class Depths>
     void draw_cluster(const ScreenTriangles& triangles, const FaceClusters::Cluster& cluster,
-                      native::ClusterFaces& faces, native::ClusterScreen& screen, Put& put) const;
+                      native::ClusterFaces& faces, native::ClusterScreen& screen, Put& put,
+                      NeighborsHidden<Depths>& hidden) const;
+    /// Of a cluster's vertices, of which none has to be clipped.
+    ScreenBounds bounds(const native::ClusterScreen& screen) const {
+        return {std::max(first_pixel(screen.left), area_.x), std::max(first_pixel(screen.top), area_.y),
+                std::min(last_pixel(screen.right), area_.x + area_.width - 1),
+                std::min(last_pixel(screen.bottom), area_.y + area_.height - 1), screen.nearest};
+    }
     /// First and last pixel whose centre lies between two sub-pixel coordinates.
     static int first_pixel(int32_t low) { return (low + half_pixel - 1) >> subpixel_bits; }
     static int last_pixel(int32_t high) { return (high - half_pixel) >> subpixel_bits; }
@@ -199,12 +216,12 @@ inline void TriangleRaster::Window::draw_corners(const ScreenTriangles& t, const
         draw_faced(t, a, b, c, put);
 }
 
-template <class Put>
-bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
+template <class Put, class Depths>
+bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put, Depths& depths) {
     if (t.clusters) {
         const ClusterCulling culling(t, size_, area_);
         if (t.clips || needs_no_clipping(t, culling)) {
-            draw_clusters(t, culling, put);
+            draw_clusters(t, culling, put, depths);
             return true;
         }
     }
@@ -228,9 +245,9 @@ bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
     return true;
 }
 
-template <class Put>
-void TriangleRaster::draw_clusters(const ScreenTriangles& t, const ClusterCulling& culling,
-                                   const Put& put) const {
+template <class Put, class Depths>
+void TriangleRaster::draw_clusters(const ScreenTriangles& t, const ClusterCulling& culling, const Put& put,
+                                   Depths& depths) const {
     const std::span<const FaceClusters::Cluster> clusters = t.clusters->clusters();
     native::ClusterFaces all{.half_width = 0.5f * float(size_.x()),
                              .half_height = 0.5f * float(size_.y()),
@@ -242,25 +259,34 @@ void TriangleRaster::draw_clusters(const ScreenTriangles& t, const ClusterCullin
                              .mirrored = t.mirrored};
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) all.clip_from_mesh[column][row] = t.clip_from_mesh(row, column);
-    parallel_chunks(clusters.size(), cluster_grain, [&](size_t begin, size_t end) {
+    const auto depth = [&](size_t i) { return culling.depth(clusters[i]); };
+    visit_near_to_far(clusters.size(), cluster_grain, depth, [&](std::span<const uint32_t> near) {
         Put own = put;
         native::ClusterFaces faces = all;
         native::ClusterScreen screen;
-        for (const FaceClusters::Cluster& cluster : clusters.subspan(begin, end - begin))
-            if (!culling.drops(cluster)) draw_cluster(t, cluster, faces, screen, own);
+        // Of the spheres, and of what is projected.
+        NeighborsHidden around(depths), within(depths);
+        for (const uint32_t i : near)
+            if (!around.hides([&] { return culling.bounds(clusters[i]); }))
+                draw_cluster(t, clusters[i], faces, screen, own, within);
     });
 }
 
-template <class Put>
+template <class Put, class Depths>
 void TriangleRaster::draw_cluster(const ScreenTriangles& t, const FaceClusters::Cluster& cluster,
-                                  native::ClusterFaces& faces, native::ClusterScreen& screen,
-                                  Put& put) const {
+                                  native::ClusterFaces& faces, native::ClusterScreen& screen, Put& put,
+                                  NeighborsHidden<Depths>& hidden) const {
     const Window all = rows(area_.y, area_.y + area_.height - 1);
     faces.vertices = cluster.vertices;
     faces.corners = t.clusters->corners_of(cluster);
     faces.vertex_count = cluster.vertex_count;
     faces.face_count = cluster.face_count;
-    const int count = native::set_up_cluster(faces, screen);
+    int count = -1;
+    if (native::project_cluster(faces, screen)) {
+        const ScreenBounds covered = bounds(screen);
+        if (covered.empty() || hidden.hides([&] { return covered; })) return;
+        count = native::set_up_cluster(faces, screen);
+    }
     for (int i = 0; i < count; ++i) {
         const int face = screen.kept[i];
         const uint32_t number = t.clusters->face_of(cluster, face);
@@ -347,7 +373,7 @@ void TriangleRaster::Window::draw_clipped(const ScreenTriangles& t, const int32_
         if (!(c.w() > 0)) return;
         screen[k] = {int32_t(std::lrint((c.x() / c.w() + 1) * half.x() * subpixel)),
                      int32_t(std::lrint((1 - c.y() / c.w()) * half.y() * subpixel)),
-                     float(std::clamp(c.z() / c.w(), 1e-30, 1.0))};
+                     float(std::clamp(c.z() / c.w(), double(least_depth), 1.0))};
     }
     for (size_t k = 1; k + 1 < count; ++k) draw_faced(t, screen[0], screen[k], screen[k + 1], put);
 }

@@ -22,6 +22,12 @@ void fill(PooledVector<Key>& pixels, size_t count, Key key) {
     });
 }
 
+/// A pixel while others are drawn.
+template <class Key>
+Key load_relaxed(Key& pixel) {
+    return std::atomic_ref<Key>(pixel).load(std::memory_order_relaxed);
+}
+
 /// Keeps the larger of a pixel and a key; any order of calls gives the same.
 template <class Key>
 [[gnu::always_inline]] inline void raise(Key& pixel, Key key) {
@@ -47,7 +53,7 @@ void replace_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(u
     }
 }
 inline void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
-    const uint64_t seen = std::atomic_ref(pixel).load(std::memory_order_relaxed);
+    const uint64_t seen = load_relaxed(pixel);
     if (seen >> 32 <= key >> 32) replace_point(pixel, key, content);
 }
 
@@ -89,7 +95,7 @@ class TestedPixels {
     ~TestedPixels() { flush(); }
 
     void operator()(size_t pixel, float depth, uint32_t face) {
-        const uint64_t seen = std::atomic_ref(pixels_[pixel]).load(std::memory_order_relaxed);
+        const uint64_t seen = load_relaxed(pixels_[pixel]);
         if (!order_.takes(pixel, depth) || order_.key(depth, 0) >> 32 < seen >> 32) return;
         const int row = int(pixel / size_t(area_.width)), column = int(pixel % size_t(area_.width));
         waiting_[count_] = {area_.x + column, area_.y + row, face, depth};
@@ -123,6 +129,7 @@ class TestedPixels {
 
 void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
     raster_.set_area(size, area);
+    hierarchy_.clear(area);
     fill(pixels_, size_t(area.width) * size_t(area.height), uint64_t(0));
     limits_ = nullptr;
 }
@@ -142,25 +149,39 @@ void VisibilityBuffer::end_layer(PeelLimits& limits) {
 
 bool VisibilityBuffer::draw(const ScreenTriangles& triangles, uint32_t first_id, const AlphaTest* test) {
     const KeyOrder order(limits_);
-    if (test) return raster_.draw(triangles, TestedPixels(order, *test, pixels_, raster_.area(), first_id));
+    if (test)
+        return raster_.draw(triangles, TestedPixels(order, *test, pixels_, raster_.area(), first_id), *this);
     if (limits_)
         return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t face) {
             if (order.takes(pixel, depth)) raise(pixels_[pixel], order.key(depth, first_id + face));
         });
-    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t face) {
+    const auto put = [&](size_t pixel, float depth, uint32_t face) {
         raise(pixels_[pixel], uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + face)));
-    });
+    };
+    return raster_.draw(triangles, put, *this);
+}
+
+bool VisibilityBuffer::hides(const ScreenBounds& bounds) {
+    if (limits_) return bounds.empty();
+    return hierarchy_.hides(bounds, [&](size_t pixel) { return depth_of(load_relaxed(pixels_[pixel])); });
 }
 
 void DepthBuffer::clear(Vec2i size, float nothing) {
     raster_.set_area(size, {0, 0, size.x(), size.y()});
+    hierarchy_.clear(raster_.area());
     fill(pixels_, size_t(size.x()) * size_t(size.y()), std::bit_cast<int32_t>(nothing));
 }
 
 bool DepthBuffer::draw(const ScreenTriangles& triangles) {
-    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t) {
+    const auto put = [&](size_t pixel, float depth, uint32_t) {
         raise(pixels_[pixel], std::bit_cast<int32_t>(depth));
-    });
+    };
+    return raster_.draw(triangles, put, *this);
+}
+
+bool DepthBuffer::hides(const ScreenBounds& bounds) {
+    return hierarchy_.hides(bounds,
+                            [&](size_t pixel) { return std::bit_cast<float>(load_relaxed(pixels_[pixel])); });
 }
 
 void DepthBuffer::put(size_t pixel, float depth) {
@@ -193,7 +214,7 @@ void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, 
             if (order.takes(pixel, depth)) raise_point(pixels_[pixel], key, content);
         });
     };
-    if (splats.batches) return raster.draw_batches(*splats.batches, draw);
+    if (splats.batches) return raster.draw_batches(*splats.batches, draw, *this);
     parallel_for(size_t(V.rows()), point_grain, [&](size_t i) {
         const ScreenPoint point = raster.project(V.data() + 3 * i);
         if (point.depth > 0)
@@ -222,6 +243,7 @@ void VisibilityBuffer::crop() {
     }
     const PixelRect left = kept.width > 0 ? kept : PixelRect{};
     raster_.set_area(raster_.size(), left);
+    hierarchy_.clear(left);
     pixels_.resize(size_t(left.width) * size_t(left.height));
 }
 

@@ -12,6 +12,7 @@
 #include "easypbr/core/memory_pool.h"
 #include "easypbr/native/kernels.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/raster/hierarchical_depth.h"
 #include "easypbr/render/raster/point_raster.h"
 #include "easypbr/render/raster/triangle_raster.h"
 #include "easypbr/scene/array.h"
@@ -63,6 +64,10 @@ class VisibilityBuffer {
     void draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
                      const std::function<uint64_t(uint32_t id)>& content);
 
+    /// Whether nothing of what lies within the bounds would be seen. False while a layer is drawn, of which
+    /// what is seen is not always the nearest.
+    bool hides(const ScreenBounds& bounds);
+
     const PixelRect& area() const { return raster_.area(); }
     /// Pixels of the area, row by row: 0 where there is nothing.
     std::span<const uint64_t> pixels() const { return {pixels_.data(), pixels_.size()}; }
@@ -76,6 +81,7 @@ class VisibilityBuffer {
 
   private:
     TriangleRaster raster_;
+    HierarchicalDepth hierarchy_;
     PooledVector<uint64_t> pixels_;  ///< depth in the upper, complement of the id in the lower half
     const PeelLimits* limits_ = nullptr;
 };
@@ -90,6 +96,8 @@ class DepthBuffer {
     bool draw(const ScreenTriangles& triangles);
     /// Keeps the larger of a pixel and a depth; from any thread.
     void put(size_t pixel, float depth);
+    /// See VisibilityBuffer.
+    bool hides(const ScreenBounds& bounds);
     /// Adds what another buffer of the same size and area holds.
     void add(const VisibilityBuffer& other);
     /// Row by row, reversed depths as floats' bits.
@@ -97,6 +105,7 @@ class DepthBuffer {
 
   private:
     TriangleRaster raster_;
+    HierarchicalDepth hierarchy_;
     PooledVector<int32_t> pixels_;  ///< floats' bits: those of positive ones are in the order of their values
 };
 

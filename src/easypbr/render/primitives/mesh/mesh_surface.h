@@ -13,7 +13,7 @@ struct MeshFacts {
     Array3f N;
     bool normals_agree = true;    ///< the winding tells the normals' side
     bool closed_outward = false;  ///< from outside, back faces need not be drawn
-    Box3d box;                    ///< of the vertices, when it is closed
+    Box3d box;                    ///< of the vertices, when it is closed or small; else empty
 };
 
 /// What shaders read of an item's triangles, whatever sees them.

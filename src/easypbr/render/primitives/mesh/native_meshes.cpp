@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -37,6 +38,21 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
             both_sides,
             mirrored != backs,
             true};
+}
+
+/// Meshes of more vertices are culled by their clusters.
+constexpr Eigen::Index small_mesh = 1 << 16;
+
+/// What a box covers of a part of the picture.
+ScreenBounds bounds_of(const Frame& frame, const PixelRect& area, const Mat4d& clip_from_mesh,
+                       const Box3d& box) {
+    constexpr double wider = 1.001;  // corners are rounded
+    const SphereCulling culling(clip_from_mesh.cast<float>(), frame.size, area);
+    const bool is_known = !box.isEmpty();
+    const Vec3 center = is_known ? Vec3(box.center().cast<float>()) : Vec3(Vec3::Zero());
+    const float radius =
+        is_known ? float(wider * box.diagonal().norm() / 2) : std::numeric_limits<float>::infinity();
+    return culling.drops(center, radius) ? ScreenBounds::nothing() : culling.bounds(center, radius);
 }
 
 /// Whether pixels of its triangles may be left out.
@@ -84,6 +100,7 @@ const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
     MeshFacts& known = facts_.get({mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}, [&] {
         MeshFacts made;
         made.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
+        if (mesh.V.rows() <= small_mesh) made.box = gpu::box_of(mesh.V);
         made.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, made.N, mesh.F);
         return made;
     });
@@ -153,24 +170,43 @@ std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const 
 
 bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
                              VisibleSurfaces& surfaces) {
-    const bool backs = surfaces.buffer().takes_backs();
+    VisibilityBuffer& buffer = surfaces.buffer();
+    const bool backs = buffer.takes_backs();
+    struct Waiting {
+        const DrawItem* item;
+        const MeshFacts* known;
+        const MeshSurface* surface;
+        uint32_t first_id;
+        Mat4d clip_from_mesh;
+        ScreenBounds bounds;
+    };
+    std::vector<Waiting> waiting;
     for (const DrawItem& item : items) {
         if (!surfaces.has_room(item.part.face_count)) return false;
-        const bool is_blended = item.alpha == AlphaMode::blend;
-        if (is_blended && !(item.material.opacity > 0)) continue;
+        if (item.alpha == AlphaMode::blend && !(item.material.opacity > 0)) continue;
         if (backs && !item.is_volume()) continue;
         const MeshFacts& known = facts_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
-        std::unique_ptr<MeshSurface> surface = surface_of(frame, item, extensions, known, clip_from_mesh);
-        const AlphaTest test{[of = surface.get()](std::span<const native::VisiblePixel> pixels,
-                                                  std::span<float> alpha) { of->alpha(pixels, alpha); },
-                             is_blended ? std::numeric_limits<float>::min() : item.material.alpha_cutoff};
-        const uint32_t first = surfaces.add(item, uint32_t(item.part.face_count), std::move(surface));
-        ScreenTriangles triangles = triangles_of(frame, item, known, clip_from_mesh, backs);
-        triangles.clusters = clusters_.draw(item.mesh(), item.part);
-        if (!surfaces.buffer().draw(triangles, first, has_holes(item) ? &test : nullptr)) return false;
+        std::unique_ptr<MeshSurface> made = surface_of(frame, item, extensions, known, clip_from_mesh);
+        const MeshSurface* const surface = made.get();
+        const uint32_t first_id = surfaces.add(item, uint32_t(item.part.face_count), std::move(made));
+        waiting.push_back({&item, &known, surface, first_id, clip_from_mesh,
+                           bounds_of(frame, buffer.area(), clip_from_mesh, known.box)});
     }
-    return true;
+    // What is near may hide others.
+    std::ranges::stable_sort(waiting, std::greater(), [](const Waiting& w) { return w.bounds.nearest; });
+    return std::ranges::all_of(waiting, [&](const Waiting& w) {
+        const DrawItem& item = *w.item;
+        ScreenTriangles triangles = triangles_of(frame, item, *w.known, w.clip_from_mesh, backs);
+        triangles.clusters = clusters_.draw(item.mesh(), item.part);
+        const AlphaTest test{
+            [&](std::span<const native::VisiblePixel> pixels, std::span<float> alpha) {
+                w.surface->alpha(pixels, alpha);
+            },
+            item.alpha == AlphaMode::blend ? std::numeric_limits<float>::min() : item.material.alpha_cutoff};
+        return buffer.hides(w.bounds) ||
+               buffer.draw(triangles, w.first_id, has_holes(item) ? &test : nullptr);
+    });
 }
 
 void NativeMeshes::evict_unused() {
