@@ -2,6 +2,7 @@
 #include "easypbr/render/raster/point_batches.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <random>
 #include <vector>
@@ -147,6 +148,29 @@ TEST(PointBatches, AreDroppedAsAWhole) {
     // A third of the picture's height is a third of what the camera sees of the cube, a batch a tenth.
     EXPECT_GT(dropped({60, 40, 40, 40}), 0.4);
     EXPECT_LT(dropped({60, 40, 40, 40}), 0.9);
+}
+
+// A wall of points, and a cloud behind it.
+TEST(PointBatches, AreLeftOutWhereTheyAreHidden) {
+    constexpr int across = 200, behind = 100000;
+    const Array3f hidden = cloud(behind, 8);
+    Array3f::Dense V(behind + across * across, 3);
+    for (int i = 0; i < behind; ++i) V.row(i) = 0.5f * hidden.row(i);
+    for (int i = 0; i < across * across; ++i)
+        V.row(behind + i) << 2 * float(i % across) / (across - 1) - 1,
+            2 * float(i / across) / (across - 1) - 1, 1;
+    const Array3f points(V);
+    const PointBatches batches(points);
+    const PixelRect whole{0, 0, size.x(), size.y()};
+    PointSplats splats = splats_from(Vec3d(0, 0, 4), false);
+    splats.pixels = 3;
+    std::atomic<int> asked{0};
+    splats.is_drawn = [&](size_t) { return ++asked > 0; };
+    const auto expected = drawn(points, splats, nullptr, whole);
+    EXPECT_GT(asked, behind);
+    asked = 0;
+    EXPECT_EQ(drawn(points, splats, &batches, whole), expected);
+    EXPECT_LT(asked, across * across + behind / 10);
 }
 
 TEST(BatchedClouds, AreMadeWhenACloudIsDrawnAgain) {
