@@ -139,7 +139,7 @@ TEST(FaceClusters, AreDroppedAsAWhole) {
         const ClusterCulling culling(t, size, {0, 0, size.x(), size.y()});
         const auto count = std::ranges::count_if(
             clusters.clusters(),
-            [&](const FaceClusters::Cluster& cluster) { return culling.drops(cluster); });
+            [&](const FaceClusters::Cluster& cluster) { return culling.depth(cluster) < 0; });
         return double(count) / double(clusters.clusters().size());
     };
     EXPECT_EQ(dropped(Vec3d::Zero(), true), 0);

@@ -132,7 +132,6 @@ class ClusterCulling {
   public:
     /// Of `area`, a part of a picture of that size.
     ClusterCulling(const ScreenTriangles& triangles, Vec2i size, const PixelRect& area);
-    bool drops(const FaceClusters::Cluster& cluster) const { return depth(cluster) < 0; }
     /// See SphereCulling; -1 of clusters that are dropped.
     float depth(const FaceClusters::Cluster& cluster) const;
     /// Nothing of a cluster would have to be clipped; false where its sphere alone does not tell.
