@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What hidden surfaces cost: milliseconds of a frame of what is seen alone, and of the same with as much as eight times more
-behind it. `layers`: grids of 1 M faces one behind another, as one mesh. `parts`: 1200 balls in a closed box, as objects.
+behind it. `layers`: grids of 1 M faces one behind another, as one mesh. `parts`: a wall, and 1200 balls behind it, as objects.
 
 usage: hidden.py [ROUNDS [WIDTHxHEIGHT]]      needs the easypbr package; without a GPU
 By default 15 rounds, 1280x720; the middle one of the rounds is printed.
@@ -32,7 +32,7 @@ def layers(count: int) -> easypbr.Scene:
 
 
 def parts(count: int) -> easypbr.Scene:
-    """Balls of 4800 faces in a box with one wall that is seen."""
+    """Balls of 4800 faces behind a wall."""
     random = np.random.default_rng(1)
     wall = easypbr.Mesh(
         np.array([[-1, -1, 0.3], [1, -1, 0.3], [1, 1, 0.3], [-1, 1, 0.3]], np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.int32)
