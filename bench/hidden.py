@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What hidden surfaces cost: milliseconds of a frame of what is seen alone, and of the same with as much as eight times more
-behind it. `layers`: grids of 1 M faces one behind another, as one mesh. `parts`: a wall, and 1200 balls behind it, as objects.
+"""What hidden surfaces cost: milliseconds of a frame of what is seen alone, and of the same before much that is hidden.
+`layers`: grids of 1 M faces one behind another, as one mesh. `parts`: a wall, and 1200 balls behind it, as objects.
 
 usage: hidden.py [ROUNDS [WIDTHxHEIGHT]]      needs the easypbr package; without a GPU
 By default 15 rounds, 1280x720; the middle one of the rounds is printed.

@@ -11,9 +11,9 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raster/visibility.h"
-#include "easypbr/scene/camera.h"
 #include "easypbr/scene/mesh.h"
 #include "shuffled_mesh.h"
+#include "view_of_center.h"
 
 namespace easypbr::render::face_clusters_test {
 namespace {
@@ -24,13 +24,8 @@ MeshPart all_of(const MeshData& mesh) {
     return {.name = {}, .first_face = 0, .face_count = int(mesh.F.rows())};
 }
 
-/// A view from a place, near plane and all, towards the middle.
-Mat4 clip_from(const Vec3d& eye, bool orthographic, double near = 0.05) {
-    Camera camera = Camera::look_at(eye, Vec3d::Zero());
-    camera.near = near;
-    camera.far = 50;
-    if (orthographic) camera.projection = Projection::orthographic;
-    return (camera.projection_matrix(double(size.x()) / size.y()) * camera.view()).cast<float>();
+Mat4 clip_from(const Vec3d& eye, bool orthographic) {
+    return easypbr::clip_from(camera_at(eye, orthographic), size);
 }
 
 /// Keys of pixels, of all or of a part of the picture.

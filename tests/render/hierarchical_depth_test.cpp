@@ -14,27 +14,16 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/raster/visibility.h"
-#include "easypbr/scene/camera.h"
 #include "easypbr/scene/scene.h"
 #include "render_test.h"
 #include "shuffled_mesh.h"
+#include "view_of_center.h"
 
 namespace easypbr::render::hierarchical_depth_test {
 namespace {
 
 const Vec2i size(320, 240);
 const PixelRect whole{0, 0, size.x(), size.y()};
-
-Camera camera_at(const Vec3d& eye, bool orthographic) {
-    Camera camera = Camera::look_at(eye, Vec3d::Zero());
-    camera.near = 0.05;
-    camera.far = 50;
-    if (orthographic) camera.projection = Projection::orthographic;
-    return camera;
-}
-Mat4 clip_from(const Camera& camera) {
-    return (camera.projection_matrix(double(size.x()) / size.y()) * camera.view()).cast<float>();
-}
 
 TEST(HierarchicalDepth, HidesWhatIsBehindAllPixels) {
     const PixelRect area{5, 3, 21, 13};  // blocks at the right and at the bottom are cut off
@@ -80,7 +69,7 @@ TEST(SphereCulling, BoundsHoldWhatPointsCover) {
     int seen = 0;
     for (int i = 0; i < 4000; ++i) {
         const Camera camera = camera_at(Vec3d(unit(random), unit(random), 1.5 + unit(random)), i % 2 == 1);
-        const Mat4 m = clip_from(camera);
+        const Mat4 m = clip_from(camera, size);
         const Vec3 center = Vec3(unit(random), unit(random), unit(random)) * 2;
         const float radius = std::exp(4 * unit(random) - 3);
         const ScreenBounds bounds = SphereCulling(m, size, area).bounds(center, radius);
@@ -105,8 +94,9 @@ TEST(SphereCulling, BoundsHoldWhatPointsCover) {
 // A ball before the viewer: its near pole's depth, and no more pixels than its tangent cone and the margin.
 TEST(SphereCulling, BoundsAreTight) {
     const Camera camera = camera_at(Vec3d(0, 0, 4), false);
-    const ScreenBounds bounds = SphereCulling(clip_from(camera), size, whole).bounds(Vec3::Zero(), 0.5f);
-    const Vec4 pole = clip_from(camera) * Vec4(0, 0, 0.5f, 1);
+    const ScreenBounds bounds =
+        SphereCulling(clip_from(camera, size), size, whole).bounds(Vec3::Zero(), 0.5f);
+    const Vec4 pole = clip_from(camera, size) * Vec4(0, 0, 0.5f, 1);
     EXPECT_NEAR(bounds.nearest, pole.z() / pole.w(), 1e-5f * bounds.nearest);
     // From the centre of the picture, with the near pole's distance: 0.5 / 3.5 of the tangent of half the
     // angle of view.
@@ -189,7 +179,7 @@ TEST(HierarchicalDepth, HiddenClustersAreNotDrawn) {
     const auto calls = [&](const MeshData& drawn, bool culls, std::vector<float>& depths) {
         const MeshPart part{.name = {}, .first_face = 0, .face_count = int(drawn.F.rows())};
         const FaceClusters clusters(drawn.V, drawn.F, part);
-        const Mat4 clip = clip_from(camera_at(Vec3d(0, 0, 4), false));
+        const Mat4 clip = clip_from(camera_at(Vec3d(0, 0, 4), false), size);
         const ScreenTriangles triangles{drawn.V, drawn.F, 0,    part.face_count, clip,
                                         true,    false,   true, &clusters};
         TriangleRaster raster;
@@ -235,10 +225,10 @@ TEST(HierarchicalDepth, ChangesNoPixel) {
                     const auto drawn = [&](const FaceClusters* in) {
                         VisibilityBuffer buffer;
                         buffer.clear(size, area);
-                        EXPECT_TRUE(
-                            buffer.draw({mesh->V, mesh->F, 0, int(mesh->F.rows()),
-                                         clip_from(camera_at(eye, orthographic)), true, false, true, in},
-                                        3));
+                        EXPECT_TRUE(buffer.draw(
+                            {mesh->V, mesh->F, 0, int(mesh->F.rows()),
+                             clip_from(camera_at(eye, orthographic), size), true, false, true, in},
+                            3));
                         return std::vector<uint64_t>(buffer.pixels().begin(), buffer.pixels().end());
                     };
                     ASSERT_EQ(drawn(&clusters), drawn(nullptr)) << eye.transpose() << orthographic;
@@ -284,7 +274,7 @@ TEST(HierarchicalDepth, HidesNothingOfLayers) {
     const MeshData mesh = nested_balls(1);
     VisibilityBuffer buffer;
     buffer.clear(size, whole);
-    const Mat4 clip = clip_from(camera_at(Vec3d(0, 0, 4), false));
+    const Mat4 clip = clip_from(camera_at(Vec3d(0, 0, 4), false), size);
     ASSERT_TRUE(buffer.draw({mesh.V, mesh.F, 0, int(mesh.F.rows()), clip, true, false, true}, 0));
     const ScreenBounds behind = SphereCulling(clip, size, whole).bounds(Vec3::Zero(), 0.3f);
     EXPECT_TRUE(buffer.hides(behind));

@@ -12,7 +12,7 @@
 #include "easypbr/core/background.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raster/visibility.h"
-#include "easypbr/scene/camera.h"
+#include "view_of_center.h"
 
 namespace easypbr::render::point_batches_test {
 namespace {
@@ -34,13 +34,8 @@ Array3f cloud(int count, unsigned seed) {
 }
 
 PointSplats splats_from(const Vec3d& eye, bool orthographic) {
-    Camera camera = Camera::look_at(eye, Vec3d::Zero());
-    camera.near = 0.05;
-    camera.far = 50;
-    if (orthographic) camera.projection = Projection::orthographic;
     PointSplats splats;
-    splats.clip_from_mesh =
-        (camera.projection_matrix(double(size.x()) / size.y()) * camera.view()).cast<float>();
+    splats.clip_from_mesh = clip_from(camera_at(eye, orthographic), size);
     return splats;
 }
 
