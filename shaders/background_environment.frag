@@ -12,7 +12,7 @@ uniform sampler2D u_equirect;
 layout(location = 0) out vec4 o_radiance;
 
 void main() {
-    vec3 direction = u_env_from_world * ray_direction(gl_FragCoord.xy);
+    vec3 direction = u_env_from_world * ray_of_any_length(gl_FragCoord.xy);
     vec3 radiance = is_blurred ? textureLod(u_prefiltered, direction, u_level).rgb
                                : textureLod(u_equirect, equirect_uv(direction), u_level).rgb;
     o_radiance = vec4(radiance * u_env_intensity, 1.0);

@@ -19,9 +19,15 @@ vec3 view_position(vec2 pixel, float d) {
     return is_orthographic ? vec3(xy, -z) : vec3(xy * z, -z);
 }
 
-// World direction of the ray through a pixel, away from the camera, of unit length.
-vec3 ray_direction(vec2 pixel) {
+// World direction of the ray through a pixel, away from the camera.
+vec3 ray_of_any_length(vec2 pixel) {
     if (is_orthographic) return u_world_from_view * vec3(0.0, 0.0, -1.0);
     vec2 ndc = ndc_of_pixel(pixel);
-    return normalize(u_world_from_view * vec3((ndc + u_unproject.zw) * u_unproject.xy, -1.0));
+    return u_world_from_view * vec3((ndc + u_unproject.zw) * u_unproject.xy, -1.0);
+}
+
+// The same, of unit length.
+vec3 ray_direction(vec2 pixel) {
+    vec3 ray = ray_of_any_length(pixel);
+    return is_orthographic ? ray : normalize(ray);
 }

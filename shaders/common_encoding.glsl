@@ -16,8 +16,13 @@ vec3 oct_decode(vec2 p) {
     return normalize(n);
 }
 
+#ifndef NATIVE  // There it is a function of the lanes.
+vec3 root_2_4(vec3 c) { return pow(max(c, 0.0), vec3(1.0 / 2.4)); }
+#endif
+
+// Of display light, up to 1.
 vec3 srgb_encode(vec3 c) {
-    return mix(1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+    return mix(1.055 * root_2_4(c) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
 vec3 srgb_decode(vec3 c) {

@@ -38,6 +38,6 @@ void main() {
         behind = vec4(textureLod(u_background_image, uv * u_background_uv.xy + u_background_uv.zw, 0.0).rgb, 1.0);
     color += (1.0 - color.a) * behind;
     // Files hold straight alpha.
-    vec3 straight = color.a > 0.0 ? color.rgb / color.a : vec3(0.0);
+    vec3 straight = color.a > 0.0 ? color.rgb * (1.0 / color.a) : vec3(0.0);
     o_color = is_linear_output ? color : vec4(srgb_encode(clamp(straight, 0.0, 1.0)), color.a);
 }

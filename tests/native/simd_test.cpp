@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -83,6 +86,17 @@ TEST(Lanes, PowerOfZeroIsZero) {
     EXPECT_NEAR(pow(vfloat(0.5f), vfloat(2.4f)).v[0], std::pow(0.5, 2.4), 1e-6);
 }
 
+TEST(Lanes, RootOfDisplayLight) {
+    const auto error_at = [](float x) {
+        return std::abs(double(root_2_4(vfloat(x)).v[0]) / std::pow(double(x), 1 / 2.4) - 1);
+    };
+    for (float x = 0x1p-9f; x < 100; x *= 1.0001f) EXPECT_LT(error_at(x), 2e-6) << x;
+    // Where one power follows another.
+    for (float x = 0x1p-8f; x < 100; x *= 2)
+        for (const float at : {x, std::nextafter(x, 0.0f)}) EXPECT_LT(error_at(at), 2e-6) << at;
+    EXPECT_EQ(root_2_4(vfloat(std::nanf(""))).v[0], root_2_4(vfloat(0.0f)).v[0]);
+}
+
 TEST(Lanes, CountsBits) {
     for (const unsigned bits : {0u, 1u, 0xffffffffu, 0x80000000u, 0x12345678u})
         EXPECT_EQ(bitCount(vuint(bits)).v[0], std::popcount(bits));
@@ -102,6 +116,29 @@ TEST(Samplers, HalvesAreExact) {
         const float expected = float(Eigen::half(Eigen::half_impl::raw_uint16_to_half(h)));
         EXPECT_EQ(from_halves(Shorts4{h, h, h, h})[1], expected);
         EXPECT_EQ(from_halves(Shorts8{h, h, h, h, h, h, h, h})[6], expected);
+    }
+}
+
+TEST(Samplers, PixelsAreTakenApartAndPutTogether) {
+    std::array<float, 4 * lanes> pixels;
+    std::iota(pixels.begin(), pixels.end(), 0.0f);
+    const vec4 channels = load_row<FloatPixel>(reinterpret_cast<const std::byte*>(pixels.data()));
+    for (int k = 0; k < lanes; ++k) {
+        EXPECT_EQ(channels.x.v[k], float(4 * k));
+        EXPECT_EQ(channels.w.v[k], float(4 * k + 3));
+    }
+    const PixelRow row = interleaved(channels);
+    EXPECT_EQ(std::memcmp(row.v, pixels.data(), sizeof row.v), 0);
+}
+
+TEST(Samplers, BytesAndShortsHaveNoSign) {
+    const Ints8 bytes = widened(Bytes8{0, 1, 127, 128, 200, 255, 2, 254}),
+                shorts = widened(Shorts8{0, 1, 32767, 32768, 40000, 65535, 2, 65534});
+    const std::array<int, 8> expected_bytes{0, 1, 127, 128, 200, 255, 2, 254},
+        expected_shorts{0, 1, 32767, 32768, 40000, 65535, 2, 65534};
+    for (int i = 0; i < 8; ++i) {
+        EXPECT_EQ(bytes[i], expected_bytes[size_t(i)]);
+        EXPECT_EQ(shorts[i], expected_shorts[size_t(i)]);
     }
 }
 

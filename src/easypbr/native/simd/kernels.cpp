@@ -44,24 +44,6 @@ struct Fragment : TextureReader {
 namespace easypbr::native::EASYPBR_ISA {
 namespace {
 
-/// Four channels of all lanes, pixel by pixel.
-INLINE void interleave(const vec4& c, Floats4* pixels) {
-#if defined(__AVX2__) && !defined(__AVX512F__)
-    const __m256 xy_low = _mm256_unpacklo_ps(c.x.v, c.y.v), xy_high = _mm256_unpackhi_ps(c.x.v, c.y.v),
-                 zw_low = _mm256_unpacklo_ps(c.z.v, c.w.v), zw_high = _mm256_unpackhi_ps(c.z.v, c.w.v);
-    const __m256 p04 = _mm256_shuffle_ps(xy_low, zw_low, 0x44), p15 = _mm256_shuffle_ps(xy_low, zw_low, 0xee),
-                 p26 = _mm256_shuffle_ps(xy_high, zw_high, 0x44),
-                 p37 = _mm256_shuffle_ps(xy_high, zw_high, 0xee);
-    const __m256 pairs[4] = {p04, p15, p26, p37};
-    for (int i = 0; i < 4; ++i) {
-        pixels[i] = Floats4(_mm256_castps256_ps128(pairs[i]));
-        pixels[4 + i] = Floats4(_mm256_extractf128_ps(pairs[i], 1));
-    }
-#else
-    for (int k = 0; k < lanes; ++k) pixels[k] = Floats4{c.x.v[k], c.y.v[k], c.z.v[k], c.w.v[k]};
-#endif
-}
-
 /// What a pixel becomes.
 INLINE Floats4 blended(Floats4 value, Floats4 before, const Region& region) {
     switch (region.store) {
@@ -80,25 +62,17 @@ INLINE Floats4 blended(Floats4 value, Floats4 before, const Region& region) {
     }
 }
 
-struct FloatPixel {
-    static constexpr size_t bytes = 16;
-    static INLINE Floats4 read(const std::byte* p) { return load<Floats4>(p); }
-    static INLINE void write(std::byte* p, Floats4 value) { std::memcpy(p, &value, bytes); }
-};
-struct HalfPixel {
-    static constexpr size_t bytes = 8;
-    static INLINE Floats4 read(const std::byte* p) { return from_halves(load<Shorts4>(p)); }
-    static INLINE void write(std::byte* p, Floats4 value) {
-        const Shorts4 halves = to_halves(value);
-        std::memcpy(p, &halves, bytes);
-    }
-};
-
 template <class Pixel>
 INLINE void store_blended(std::byte* to, const vec4& color, vbool active, bool all_active,
                           const Region& region) {
+    const PixelRow row = interleaved(color);
+    if (all_active && region.store == Store::replace) {
+        for (int i = 0; i < 4; ++i)
+            Pixel::write_channels(to + Pixel::bytes * size_t(i * lanes / 4), row.v[i]);
+        return;
+    }
     Floats4 pixels[lanes];
-    interleave(color, pixels);
+    std::memcpy(pixels, row.v, sizeof pixels);
     for (int k = 0; k < lanes; ++k) {
         if (!all_active && !active.v[k]) continue;
         std::byte* p = to + Pixel::bytes * size_t(k);
@@ -111,39 +85,42 @@ INLINE vint rounded(vfloat c, float most) {
     return to_int(clamp(c, 0.0f, 1.0f) * most + 0.5f);
 }
 
-/// A value of each lane, in the low bits.
-template <class T>
-INLINE void store_bits(std::byte* to, vint bits, vbool active, bool all_active) {
-    if (sizeof(T) == sizeof(int32_t) && all_active) {
-        std::memcpy(to, &bits.v, sizeof bits.v);
+/// A value of each lane: Ints or Shorts.
+template <class Values>
+INLINE void store_values(std::byte* to, Values values, vbool active, bool all_active) {
+    if (all_active) {
+        std::memcpy(to, &values, sizeof values);
         return;
     }
+    constexpr size_t bytes = sizeof values / lanes;
     for (int k = 0; k < lanes; ++k) {
-        const T pixel = T(bits.v[k]);
-        if (active.v[k]) std::memcpy(to + sizeof(T) * size_t(k), &pixel, sizeof pixel);
+        const auto value = values[k];
+        if (active.v[k]) std::memcpy(to + bytes * size_t(k), &value, bytes);
     }
+}
+INLINE Shorts low_bits(vint v) {
+    return __builtin_convertvector(v.v, Shorts);
 }
 
 INLINE vint bytes_of(const vec4& c) {
     return rounded(c.x, 255) | rounded(c.y, 255) << 8 | rounded(c.z, 255) << 16 | rounded(c.w, 255) << 24;
 }
 
-INLINE void store_shorts(std::byte* to, const vec4& color, vbool active) {
-    const vint channels[4] = {rounded(color.x, 65535), rounded(color.y, 65535), rounded(color.z, 65535),
-                              rounded(color.w, 65535)};
-    for (int k = 0; k < lanes; ++k) {
-        if (!active.v[k]) continue;
-        uint16_t pixel[4];
-        for (int i = 0; i < 4; ++i) pixel[i] = uint16_t(channels[i].v[k]);
-        std::memcpy(to + 8 * k, pixel, sizeof pixel);
+INLINE void store_shorts(std::byte* to, const vec4& color, vbool active, bool all_active) {
+    const auto bits = [](vfloat c) __attribute__((always_inline)) {
+        return as_float(rounded(c, 65535).v);
+    };
+    const PixelRow row = interleaved({bits(color.x), bits(color.y), bits(color.z), bits(color.w)});
+    Shorts channels[4];
+    for (int i = 0; i < 4; ++i) channels[i] = low_bits(Ints(row.v[i]));
+    if (all_active) {
+        std::memcpy(to, channels, sizeof channels);
+        return;
     }
-}
-
-INLINE void store_halves(std::byte* to, vfloat value, vbool active) {
-    for (int k = 0; k < lanes; ++k) {
-        const uint16_t pixel = to_halves(Floats4{value.v[k], 0, 0, 0})[0];
-        if (active.v[k]) std::memcpy(to + 2 * k, &pixel, sizeof pixel);
-    }
+    uint64_t pixels[lanes];
+    std::memcpy(pixels, channels, sizeof pixels);
+    for (int k = 0; k < lanes; ++k)
+        if (active.v[k]) std::memcpy(to + 8 * k, &pixels[k], sizeof pixels[k]);
 }
 
 INLINE void store_pixels(const Output& output, size_t at, const vec4& c, vbool active, const Region& region) {
@@ -155,21 +132,21 @@ INLINE void store_pixels(const Output& output, size_t at, const vec4& c, vbool a
         case Pixels::rgba16f:
             return store_blended<HalfPixel>(data + 8 * at, c, active, all, region);
         case Pixels::rgba8:
-            return store_bits<int32_t>(data + 4 * at, bytes_of(c), active, all);
+            return store_values(data + 4 * at, bytes_of(c).v, active, all);
         case Pixels::rg8:
-            return store_bits<uint16_t>(data + 2 * at, rounded(c.x, 255) | rounded(c.y, 255) << 8, active,
-                                        all);
+            return store_values(data + 2 * at, low_bits(rounded(c.x, 255) | rounded(c.y, 255) << 8), active,
+                                all);
         case Pixels::rg16:
-            return store_bits<int32_t>(data + 4 * at, rounded(c.x, 65535) | rounded(c.y, 65535) << 16, active,
-                                       all);
+            return store_values(data + 4 * at, (rounded(c.x, 65535) | rounded(c.y, 65535) << 16).v, active,
+                                all);
         case Pixels::r16:
-            return store_bits<uint16_t>(data + 2 * at, rounded(c.x, 65535), active, all);
+            return store_values(data + 2 * at, low_bits(rounded(c.x, 65535)), active, all);
         case Pixels::r32f:
-            return store_bits<int32_t>(data + 4 * at, Ints(c.x.v), active, all);
+            return store_values(data + 4 * at, c.x.v, active, all);
         case Pixels::r16f:
-            return store_halves(data + 2 * at, c.x, active);
+            return store_values(data + 2 * at, to_halves(c.x.v), active, all);
         case Pixels::rgba16:
-            return store_shorts(data + 8 * at, c, active);
+            return store_shorts(data + 8 * at, c, active, all);
     }
 }
 

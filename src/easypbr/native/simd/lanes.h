@@ -398,6 +398,38 @@ INLINE vfloat log(vfloat x) {
 INLINE vfloat pow(vfloat base, vfloat exponent) {
     return select(base > 0.0f, exp2(exponent * log2(base)), vfloat(0.0f));
 }
+/// Of 16 values.
+INLINE vfloat table_at(const float (&table)[16], vint index) {
+#if defined(__AVX512F__)
+    return Floats(_mm512_permutexvar_ps(__m512i(index.v), _mm512_loadu_ps(table)));
+#elif defined(__AVX2__)
+    const __m256i i = __m256i(index.v);
+    const __m256 first = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table), i),
+                 last = _mm256_permutevar8x32_ps(_mm256_loadu_ps(table + 8), i);
+    return Floats(_mm256_blendv_ps(first, last, _mm256_castsi256_ps(_mm256_slli_epi32(i, 28))));
+#else
+    Floats values;
+    for (int k = 0; k < lanes; ++k) values[k] = table[index.v[k]];
+    return values;
+#endif
+}
+/// x^(1 / 2.4) for x from 2^-9 to 100; nearest to it beyond. A minimax polynomial of the mantissa, times the
+/// power of the exponent: relative error below 2e-6.
+INLINE vfloat root_2_4(vfloat x) {
+    static constexpr float powers[16] = {0.0743254423f, 0.0992125645f, 0.132432893f, 0.176776692f,
+                                         0.235968575f,  0.314980268f,  0.420448214f, 0.561231017f,
+                                         0.749153554f,  1.0f,          1.33483982f,  1.78179741f,
+                                         2.37841415f,   3.174802065f,  4.23785257f,  5.656854153f};
+    const Ints bits = Ints(clamp(x, 0.001953125f, 100.0f).v);
+    const vfloat t = as_float((bits & 0x007fffff) | 0x3f800000) - 1.5f;
+    vfloat p = 0.005435364320874214f;
+    p = p * t - 0.010651716962456703f;
+    p = p * t + 0.022361593320965767f;
+    p = p * t - 0.06386099010705948f;
+    p = p * t + 0.32891014218330383f;
+    p = p * t + 1.1840523481369019f;
+    return p * table_at(powers, (bits >> 23) - 118);
+}
 /// Abramowitz and Stegun 4.4.46.
 INLINE vfloat acos(vfloat v) {
     const vfloat x = abs(v);

@@ -50,13 +50,11 @@ INLINE bool add_noisy_lanes(const NoisyRow& row, int first, int place, NoisyTile
     constexpr float least_coverage = 1.0f / 64;
     const vuint material = load<Uints>(row.material + first);
     const vint kind = to_int(material >> 24);
-    Floats4 pixels[lanes];
-    std::memcpy(pixels, row.sample + 4 * first, sizeof pixels);
-    const vec4 sample = planar(pixels);
+    const vec4 sample = load_row<FloatPixel>(reinterpret_cast<const std::byte*>(row.sample + 4 * first));
     const vfloat depth = load<Floats>(row.depth + first),
                  open = row.open ? vfloat(load<Floats>(row.open + first)) : vfloat(1.0f);
-    const vbool lit = kind < row.end_of_lit,
-                is_noisy = depth > 0.0f && ((lit && sample.w >= least_coverage) || kind == row.catcher);
+    const vbool lit = kind < row.end_of_lit;
+    const vbool is_noisy = depth > 0.0f && ((lit && sample.w >= least_coverage) || kind == row.catcher);
     const vbool of_coverage = !lit && vbool(Ints(splat(row.over_nothing ? -1 : 0)));
     const vint kinds = select(of_coverage, vint(2), vint(1)),
                before = __builtin_convertvector(load<LaneBytes>(tile.noisy + place), Ints);

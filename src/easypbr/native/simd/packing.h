@@ -40,9 +40,7 @@ INLINE vec2 unpackHalf2x16(vuint bits) {
 }
 
 INLINE uvec4 texelFetch(const Rgba32ui& s, const ivec2& p, int) {
-    const vec4 bits = fetch_pixels(
-        s, p.x,
-        p.y, [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
+    const vec4 bits = fetch_pixels<FloatPixel>(s, p.x, p.y);
     return {floatBitsToUint(bits.x), floatBitsToUint(bits.y), floatBitsToUint(bits.z),
             floatBitsToUint(bits.w)};
 }

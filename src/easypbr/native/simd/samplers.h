@@ -52,7 +52,7 @@ INLINE Floats4 bilinear(Floats8 top, Floats8 bottom, float right, float below) {
     return l + (r - l) * right;
 }
 INLINE Floats8 from_bytes8(const std::byte* p) {
-    return __builtin_convertvector(__builtin_convertvector(load<Bytes8>(p), Ints8), Floats8);
+    return __builtin_convertvector(widened(load<Bytes8>(p)), Floats8);
 }
 /// Texel by texel: of any picture.
 template <class Sampler>
@@ -82,7 +82,7 @@ INLINE vec4 linear(const Sampler& s, const vec2& uv, size_t pixel_bytes, Load&& 
     return planar(pixels);
 }
 INLINE Floats8 from_shorts8(const std::byte* p) {
-    return __builtin_convertvector(__builtin_convertvector(load<Shorts8>(p), Ints8), Floats8);
+    return __builtin_convertvector(widened(load<Shorts8>(p)), Floats8);
 }
 INLINE vec4 textureLod(const EncodedLinear& s, const vec2& uv, float) {
     if (s.pixel_bytes == 8) return linear(s, uv, 8, from_shorts8) * (1.0f / 65535.0f);

@@ -9,6 +9,7 @@ using Floats4 = float __attribute__((vector_size(16)));
 using Floats8 = float __attribute__((vector_size(32)));
 using Ints4 = int32_t __attribute__((vector_size(16)));
 using Ints8 = int32_t __attribute__((vector_size(32)));
+using Shorts = uint16_t __attribute__((vector_size(2 * lanes)));
 using Shorts4 = uint16_t __attribute__((vector_size(8)));
 using Shorts8 = uint16_t __attribute__((vector_size(16)));
 using Bytes4 = uint8_t __attribute__((vector_size(4)));
@@ -19,6 +20,27 @@ INLINE T load(const void* from) {
     T value;
     std::memcpy(&value, from, sizeof value);
     return value;
+}
+
+// GCC 12 converts vectors of 8 bytes element by element.
+INLINE Ints8 widened(Bytes8 v) {
+#if defined(__AVX2__)
+    return Ints8(_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(load<int64_t>(&v))));
+#elif defined(__SSE4_1__)
+    const __m128i bytes = _mm_cvtsi64_si128(load<int64_t>(&v));
+    const Ints4 first = Ints4(_mm_cvtepu8_epi32(bytes)),
+                last = Ints4(_mm_cvtepu8_epi32(_mm_srli_si128(bytes, 4)));
+    return __builtin_shufflevector(first, last, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+    return __builtin_convertvector(v, Ints8);
+#endif
+}
+INLINE Ints8 widened(Shorts8 v) {
+#if defined(__AVX2__)
+    return Ints8(_mm256_cvtepu16_epi32(__m128i(v)));
+#else
+    return __builtin_convertvector(v, Ints8);
+#endif
 }
 
 /// Four channels of each lane, from one pixel per lane.
@@ -63,6 +85,49 @@ INLINE vec4 planar(const Floats4* pixels) {
 #endif
 }
 
+// Values of two vectors by turns, the first halves and the last ones; and every second value of both.
+#if defined(__AVX512F__)
+#define ZIPPED_FIRST 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
+#define ZIPPED_LAST 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
+#define EVEN 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
+#define ODD 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
+#elif defined(__AVX2__)
+#define ZIPPED_FIRST 0, 8, 1, 9, 2, 10, 3, 11
+#define ZIPPED_LAST 4, 12, 5, 13, 6, 14, 7, 15
+#define EVEN 0, 2, 4, 6, 8, 10, 12, 14
+#define ODD 1, 3, 5, 7, 9, 11, 13, 15
+#else
+#define ZIPPED_FIRST 0, 4, 1, 5
+#define ZIPPED_LAST 2, 6, 3, 7
+#define EVEN 0, 2, 4, 6
+#define ODD 1, 3, 5, 7
+#endif
+/// Four channels of a pixel for each lane, as pictures hold them.
+struct PixelRow {
+    Floats v[4];
+};
+INLINE PixelRow interleaved(const vec4& c) {
+    const Floats xz0 = __builtin_shufflevector(c.x.v, c.z.v, ZIPPED_FIRST),
+                 xz1 = __builtin_shufflevector(c.x.v, c.z.v, ZIPPED_LAST),
+                 yw0 = __builtin_shufflevector(c.y.v, c.w.v, ZIPPED_FIRST),
+                 yw1 = __builtin_shufflevector(c.y.v, c.w.v, ZIPPED_LAST);
+    return {{__builtin_shufflevector(xz0, yw0, ZIPPED_FIRST), __builtin_shufflevector(xz0, yw0, ZIPPED_LAST),
+             __builtin_shufflevector(xz1, yw1, ZIPPED_FIRST),
+             __builtin_shufflevector(xz1, yw1, ZIPPED_LAST)}};
+}
+INLINE vec4 planar(const PixelRow& row) {
+    const Floats xz0 = __builtin_shufflevector(row.v[0], row.v[1], EVEN),
+                 xz1 = __builtin_shufflevector(row.v[2], row.v[3], EVEN),
+                 yw0 = __builtin_shufflevector(row.v[0], row.v[1], ODD),
+                 yw1 = __builtin_shufflevector(row.v[2], row.v[3], ODD);
+    return {vfloat(__builtin_shufflevector(xz0, xz1, EVEN)), vfloat(__builtin_shufflevector(yw0, yw1, EVEN)),
+            vfloat(__builtin_shufflevector(xz0, xz1, ODD)), vfloat(__builtin_shufflevector(yw0, yw1, ODD))};
+}
+#undef ODD
+#undef EVEN
+#undef ZIPPED_LAST
+#undef ZIPPED_FIRST
+
 INLINE uint32_t bits_of(float v) {
     return load<uint32_t>(&v);
 }
@@ -78,6 +143,11 @@ INLINE Floats8 from_halves(Shorts8 h) {
     return Floats8((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
 #endif
 }
+#if defined(__AVX512F__)
+INLINE Floats from_halves(Shorts h) {
+    return Floats(_mm512_cvtph_ps(__m256i(h)));
+}
+#endif
 INLINE uint16_t to_half(float v) {
     const uint32_t bits = bits_of(v), sign = bits >> 16 & 0x8000u;
     uint32_t size = bits & 0x7fffffffu;
@@ -102,6 +172,15 @@ INLINE Shorts4 to_halves(Floats4 v) {
     return halves;
 #endif
 }
+#if defined(__AVX512F__)
+INLINE Shorts to_halves(Floats v) {
+    return Shorts(_mm512_cvtps_ph(v, 0));
+}
+#elif defined(__AVX2__)
+INLINE Shorts to_halves(Floats v) {
+    return Shorts(_mm256_cvtps_ph(v, 0));
+}
+#endif
 INLINE Floats4 low_half(Floats8 v) {
     return Floats4{v[0], v[1], v[2], v[3]};
 }
@@ -140,18 +219,54 @@ INLINE vint fetch_bits(const View& s, vint x, vint y) {
     if (!any_lane(p.inside)) return 0;
     return select(p.inside, gather(data, p.index), vint(0));
 }
-/// One pixel per lane, by a function of its index.
-template <class Load>
-INLINE vec4 fetch_pixels(const View& s, vint x, vint y, Load&& load_pixel) {
+
+// Pixels of four channels: one of them, or a channel for each lane.
+struct FloatPixel {
+    static constexpr size_t bytes = 16;
+    static INLINE Floats4 read(const std::byte* p) { return load<Floats4>(p); }
+    static INLINE Floats read_channels(const std::byte* p) { return load<Floats>(p); }
+    static INLINE void write(std::byte* p, Floats4 v) { std::memcpy(p, &v, sizeof v); }
+    static INLINE void write_channels(std::byte* p, Floats v) { std::memcpy(p, &v, sizeof v); }
+};
+struct HalfPixel {
+    static constexpr size_t bytes = 8;
+    static INLINE Floats4 read(const std::byte* p) { return from_halves(load<Shorts4>(p)); }
+    static INLINE Floats read_channels(const std::byte* p) { return from_halves(load<Shorts>(p)); }
+    static INLINE void write(std::byte* p, Floats4 v) {
+        const Shorts4 halves = to_halves(v);
+        std::memcpy(p, &halves, sizeof halves);
+    }
+    static INLINE void write_channels(std::byte* p, Floats v) {
+        const Shorts halves = to_halves(v);
+        std::memcpy(p, &halves, sizeof halves);
+    }
+};
+/// From 0 to 65535.
+struct ShortPixel {
+    static constexpr size_t bytes = 8;
+    static INLINE Floats4 read(const std::byte* p) {
+        return __builtin_convertvector(__builtin_convertvector(load<Shorts4>(p), Ints4), Floats4);
+    }
+    static INLINE Floats read_channels(const std::byte* p) {
+        return __builtin_convertvector(__builtin_convertvector(load<Shorts>(p), Ints), Floats);
+    }
+};
+
+/// A pixel for each lane, side by side.
+template <class Pixel>
+INLINE vec4 load_row(const std::byte* from) {
+    PixelRow row;
+    for (int i = 0; i < 4; ++i) row.v[i] = Pixel::read_channels(from + Pixel::bytes * size_t(i * lanes / 4));
+    return planar(row);
+}
+/// One pixel per lane.
+template <class Pixel>
+INLINE vec4 fetch_pixels(const View& s, vint x, vint y) {
     const Place p = place_of(s, x, y);
     if (!any_lane(p.inside)) return vec4(vfloat(0.0f));
+    if (p.all_inside && p.side_by_side) return load_row<Pixel>(s.data + Pixel::bytes * size_t(p.index.v[0]));
     Floats4 pixels[lanes];
-    if (p.all_inside && p.side_by_side) {
-        const int first = p.index.v[0];
-        for (int k = 0; k < lanes; ++k) pixels[k] = load_pixel(first + k);
-    } else {
-        for (int k = 0; k < lanes; ++k) pixels[k] = load_pixel(p.index.v[k]);
-    }
+    for (int k = 0; k < lanes; ++k) pixels[k] = Pixel::read(s.data + Pixel::bytes * size_t(p.index.v[k]));
     const vec4 c = planar(pixels);
     return p.all_inside ? c : select(p.inside, c, vec4(vfloat(0.0f)));
 }
@@ -195,29 +310,19 @@ INLINE vec4 fetch(const Rgba8& s, vint x, vint y) {
     return from_bytes(fetch_bits(s, x, y));
 }
 INLINE vec4 fetch(const Rgba16& s, vint x, vint y) {
-    const vec4 c = fetch_pixels(
-        s, x, y, [&](int i) __attribute__((always_inline)) {
-            return __builtin_convertvector(
-                __builtin_convertvector(load<Shorts4>(s.data + 8 * size_t(i)), Ints4), Floats4);
-        });
-    return c * (1.0f / 65535.0f);
+    return fetch_pixels<ShortPixel>(s, x, y) * (1.0f / 65535.0f);
 }
 INLINE vec4 fetch(const EncodedLinear& s, vint x, vint y) {
     return s.pixel_bytes == 8 ? fetch(Rgba16{s}, x, y) : fetch(Rgba8{s}, x, y);
 }
 INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
-    return fetch_pixels(
-        s, x, y, [&](int i) __attribute__((always_inline)) {
-            return from_halves(load<Shorts4>(s.data + 8 * size_t(i)));
-        });
+    return fetch_pixels<HalfPixel>(s, x, y);
 }
 INLINE vec4 fetch(const Rgba16fLinear& s, vint x, vint y) {
     return fetch(Rgba16f{s}, x, y);
 }
 INLINE vec4 fetch(const Rgba32f& s, vint x, vint y) {
-    return fetch_pixels(
-        s, x,
-        y, [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
+    return fetch_pixels<FloatPixel>(s, x, y);
 }
 INLINE vec4 fetch(const Rgba32fLinear& s, vint x, vint y) {
     return fetch(Rgba32f{s}, x, y);

@@ -202,6 +202,7 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
 #define EXP(c) exp(a.c)
 #define LOG(c) log(a.c)
 #define COS(c) cos(a.c)
+#define ROOT(c) root_2_4(a.c)
 #define MIX(c) mix(a.c, b.c, t.c)
 #define SELECT(c) select(condition, a.c, b.c)
 #define UNARY(V, EACH, name, TERM) \
@@ -230,6 +231,7 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
     UNARY(V, EACH, exp2, EXP2)                                 \
     UNARY(V, EACH, exp, EXP)                                   \
     UNARY(V, EACH, log, LOG)                                   \
+    UNARY(V, EACH, root_2_4, ROOT)                             \
     UNARY(V, EACH, cos, COS)                                   \
     BINARY(V, EACH, min, MIN)                                  \
     BINARY(V, EACH, max, MAX)                                  \
@@ -267,6 +269,7 @@ VECTOR(vec4, EACH4)
 #undef UNARY
 #undef SELECT
 #undef MIX
+#undef ROOT
 #undef COS
 #undef LOG
 #undef EXP
