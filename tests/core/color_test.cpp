@@ -35,6 +35,16 @@ TEST(Color, ReadsEverySpelling) {
     EXPECT_EQ(to_hex(parse_color("#12ab9f")), "#12ab9f");
 }
 
+// Those of codes come from a table.
+TEST(Color, DecodesThreeChannelsAsOne) {
+    for (int i = 0; i <= 255; ++i) {
+        const float code = float(i) / 255;
+        for (const float v : {code, std::nextafter(code, 2.0f), code - 2e-3f, code + 1})
+            EXPECT_EQ(linear_from_srgb(Vec3(v, 0, 1)), Vec3(linear_from_srgb(v), 0, 1)) << v;
+    }
+    EXPECT_TRUE(std::isnan(linear_from_srgb(Vec3(std::nanf(""), 0, 0)).x()));
+}
+
 TEST(Color, ReadsNamesOfCss) {
     // CSS Color Module Level 4, section 6.1: 148 names, of which seven greys are spelt in two ways, as are
     // cyan and magenta.

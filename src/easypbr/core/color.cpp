@@ -64,7 +64,12 @@ Vec3 srgb_from_linear(const Vec3& c) {
 }
 
 Vec3 linear_from_srgb(const Vec3& c) {
-    return c.unaryExpr([](float v) { return linear_from_srgb(v); });
+    const float* const of_code = srgb8_table();
+    return c.unaryExpr([&](float v) {
+        // Most colours come from files of 8 bits.
+        const size_t code = v >= 0 && v <= 1 ? size_t(v * 255 + 0.5f) : 0;
+        return float(code) / 255 == v ? of_code[code] : linear_from_srgb(v);
+    });
 }
 
 Rgb8 to_rgb8(const Vec3& srgb) {

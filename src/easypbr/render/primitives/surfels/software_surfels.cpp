@@ -116,11 +116,12 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
 void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSource>& sources,
                                 std::span<const float> opaque, Vec2i place, std::span<const uint64_t> entries,
                                 SurfaceWriter& writer) const {
+    if (entries.empty()) return;
     SurfelTile& t = tile_of_thread();
     t.place(frame.size, place);
     t.limit.fill(std::numeric_limits<float>::infinity());
     t.nearest.fill(std::numeric_limits<uint64_t>::max());
-    for (auto& sum : t.sums) sum.fill(0);
+    t.is_empty.fill(true);
     t.for_all([&](int x, int y, size_t i) {
         t.hidden[i] = axial_distance(frame, opaque[size_t(y) * size_t(frame.size.x()) + size_t(x)]);
     });
@@ -152,7 +153,7 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
                      });
     }
     t.for_all([&](int x, int y, size_t i) {
-        if (t.sums[i][SurfelTile::weight] == 0) return;
+        if (t.is_empty[i]) return;
         SurfacePixel pixel = t.mean(frame, *sources[source_of(t.nearest[i])].item, i);
         pixel.element = uint32_t(t.nearest[i]);
         // The mean may lie behind what hides some of the surfels.
@@ -204,7 +205,7 @@ bool SoftwareSurfels::add_layer(const Frame& frame, const std::vector<SurfelSour
         const std::span<const uint64_t> own = entries_of_source(entries, k);
         if (own.empty()) continue;
         t.limit.fill(limits.farthest ? 0 : std::numeric_limits<float>::infinity());
-        for (auto& sum : t.sums) sum.fill(0);
+        t.is_empty.fill(true);
         t.for_all(
             [&](int x, int y, size_t i) { t.hidden[i] = is_inside(x, y) ? ends_[k][in_area(x, y)] : 0; });
         t.project(sources, own, kept_);
@@ -223,7 +224,7 @@ bool SoftwareSurfels::add_layer(const Frame& frame, const std::vector<SurfelSour
                             return hit.z < t.hidden[i] && in_band;
                         });
         t.for_all([&](int x, int y, size_t i) {
-            if (t.sums[i][SurfelTile::weight] == 0) return;
+            if (t.is_empty[i]) return;
             const SurfacePixel pixel = t.mean(frame, *sources[k].item, i);
             const size_t to = writer.index(x, y);
             const float held = writer.depth(to);

@@ -71,7 +71,8 @@ struct SurfelTile {
     std::array<float, most_pixels> hidden;         ///< surfels that far away are not seen
     std::array<float, most_pixels> limit;          ///< of what belongs to the surface
     std::array<uint64_t, most_pixels> nearest;
-    std::array<std::array<int64_t, channels>, most_pixels> sums;
+    std::array<std::array<int64_t, channels>, most_pixels> sums;  ///< undefined where they are empty
+    std::array<bool, most_pixels> is_empty;                       ///< no surfel has been added
 
     std::vector<SurfelProjection> projections;  ///< of project()
     std::vector<uint32_t> seen;                 ///< those of them that something of may be seen
@@ -103,7 +104,7 @@ struct SurfelTile {
     /// are set.
     template <bool is_layer, class Takes>
     void add(const SurfelSource& source, size_t surfel, const SurfelProjection& s, Takes&& takes);
-    /// The mean surface of a pixel whose weights are not 0, but for its object and element.
+    /// The mean surface of a pixel that is not empty, but for its object and element.
     SurfacePixel mean(const Frame& frame, const DrawItem& item, size_t i) const;
 
     /// Sums are whole multiples of this, a hundred thousandth of the least weight. A pixel holds 2^33 surfels
@@ -126,6 +127,7 @@ void SurfelTile::add(const SurfelSource& source, size_t surfel, const SurfelProj
         // Relative to the limit: the sum of small numbers keeps the distance's precision.
         values[distance] = (limit[i] - hit.z) / limit[i];
         const float w = surfel_weight(hit.r2);
+        if (std::exchange(is_empty[i], false)) sums[i].fill(0);
         for (size_t c = 0; c < summed; ++c) sums[i][c] += quantised(values[c] * w);
     });
 }
