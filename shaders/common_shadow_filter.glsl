@@ -45,7 +45,12 @@ float lit_filtered(Receiver r) {
 uniform int u_soft_taps;  // of the search for casters, and of the filter
 // Widest search and filter, in map coordinates.
 const float widest = 0.15;
-const float golden_angle = 2.39996323;
+
+// Of a tap on a disc, unit: turned by the golden angle from that of the tap before (Vogel 1979).
+vec2 next_direction(vec2 direction) {
+    const float cosine = -0.737368878, sine = 0.675490294;
+    return vec2(cosine * direction.x - sine * direction.y, sine * direction.x + cosine * direction.y);
+}
 
 // Percentage-closer soft shadows (Fernando 2005): the mean depth of what is in the light's way gives the size of the
 // penumbra. A texel is in the way when it lies in the cone between the point and the light, which in map coordinates
@@ -53,6 +58,7 @@ const float golden_angle = 2.39996323;
 float lit_soft(Receiver r, bool needed) {
     float texel = 1.0 / u_shadow_resolution;
     float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
+    vec2 first_direction = vec2(cos(turn), sin(turn)), direction = first_direction;
     float reach = min(r.reach, widest / max(r.light.x, r.light.y));
     vec2 search = r.light * reach;
     // The texels around the point are looked at in any case: the cone is narrower than they are where casters are near.
@@ -65,8 +71,9 @@ float lit_soft(Receiver r, bool needed) {
     int taps = any_lane(searches) ? u_soft_taps : 0;
     for (int i = 0; i < taps; ++i) {
         // Denser towards the middle: casters near the point are seen in the narrow part of the cone only.
-        float rho = (float(i) + 0.5) / float(u_soft_taps), angle = turn + golden_angle * float(i);
-        vec2 at = r.at.xy + search * (rho * vec2(cos(angle), sin(angle)));
+        float rho = (float(i) + 0.5) / float(u_soft_taps);
+        vec2 at = r.at.xy + search * (rho * direction);
+        direction = next_direction(direction);
         at = (floor(at * u_shadow_resolution) + 0.5) * texel;
         float caster = textureLod(u_shadow_maps, vec3(at, r.at.z), 0.0).r;
         float blocked = step(r.depth + max(rho * reach, dot(r.slope, at - r.at.xy)), caster);
@@ -78,9 +85,11 @@ float lit_soft(Receiver r, bool needed) {
     vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
     float lit = 0.0;
     taps = any_lane(needed && count > 0.0) ? u_soft_taps : 0;
+    direction = first_direction;
     for (int i = 0; i < taps; ++i) {
-        float rho = sqrt((float(i) + 0.5) / float(u_soft_taps)), angle = turn + golden_angle * float(i);
-        vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;
+        float rho = sqrt((float(i) + 0.5) / float(u_soft_taps));
+        vec2 at = (r.at.xy + radius * (rho * direction)) * u_shadow_resolution - 0.5;
+        direction = next_direction(direction);
         vec2 base = floor(at), f = at - base;
         corner = base + 1.0;
         plane = dot(r.slope, corner * texel - r.at.xy);

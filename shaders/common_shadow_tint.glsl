@@ -53,14 +53,16 @@ const int tint_taps = 12;
 vec3 tint_soft(Receiver r, bool needed) {
     float texel = 1.0 / u_shadow_resolution;
     float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
+    vec2 first_direction = vec2(cos(turn), sin(turn)), direction = first_direction;
     float reach = min(r.reach, widest / max(r.light.x, r.light.y));
     float sum = 0.0, count = 0.0;
     int searched = any_lane(needed) ? 4 + u_soft_taps : 0;
     for (int i = 0; i < searched; ++i) {
         // The texels around the point, then those of the cone between the point and the light.
         float tap = float(i - 4);
-        float rho = max(tap + 0.5, 0.0) / float(u_soft_taps), angle = turn + golden_angle * tap;
-        vec2 corner = texel * (vec2(float(i & 1), float(i >> 1)) - 0.5), aside = r.light * reach * (rho * vec2(cos(angle), sin(angle)));
+        float rho = max(tap + 0.5, 0.0) / float(u_soft_taps);
+        vec2 corner = texel * (vec2(float(i & 1), float(i >> 1)) - 0.5), aside = r.light * reach * (rho * direction);
+        if (i >= 4) direction = next_direction(direction);
         vec2 at = r.at.xy + (i < 4 ? corner : aside);
         ivec2 place = clamp(ivec2(floor(at * u_shadow_resolution)), ivec2(0), ivec2(int(u_shadow_resolution) - 1));
         float caster = texelFetch(u_tint_absorption, ivec3(place, int(r.at.z)), 0).a;
@@ -74,9 +76,11 @@ vec3 tint_soft(Receiver r, bool needed) {
     float height = sum / max(count, 1.0) - r.depth;
     vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
     vec3 lost = vec3(0.0);
+    direction = first_direction;
     for (int i = 0; i < tint_taps; ++i) {
-        float rho = sqrt((float(i) + 0.5) / float(tint_taps)), angle = turn + golden_angle * float(i);
-        vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;
+        float rho = sqrt((float(i) + 0.5) / float(tint_taps));
+        vec2 at = (r.at.xy + radius * (rho * direction)) * u_shadow_resolution - 0.5;
+        direction = next_direction(direction);
         vec2 base = floor(at), f = at - base;
         for (int k = 0; k < 4; ++k) {
             int column = k & 1, row = k >> 1;
