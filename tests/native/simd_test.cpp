@@ -142,6 +142,28 @@ TEST(Samplers, BytesAndShortsHaveNoSign) {
     }
 }
 
+TEST(Samplers, GathersFourTexelsOfALayer) {
+    constexpr int size = 6;
+    std::vector<float> texels(2 * size * size);
+    std::iota(texels.begin(), texels.end(), 0.0f);
+    const Layers layers{texels.data(), size};
+    const auto texel = [&](int x, int y) {
+        return texels[size_t((size + std::clamp(y, 0, size - 1)) * size + std::clamp(x, 0, size - 1))];
+    };
+    // Corners between texels, also of the border and beyond it.
+    for (int y = -1; y <= size + 1; ++y)
+        for (int x = -1; x <= size + 1; ++x) {
+            const vec3 corner(vfloat(float(x) / size), vfloat(float(y) / size), vfloat(1.0f));
+            const vec4 found = textureGather(layers, corner);
+            for (int k = 0; k < lanes; ++k) {
+                EXPECT_EQ(found.x.v[k], texel(x - 1, y)) << x << ' ' << y;
+                EXPECT_EQ(found.y.v[k], texel(x, y)) << x << ' ' << y;
+                EXPECT_EQ(found.z.v[k], texel(x, y - 1)) << x << ' ' << y;
+                EXPECT_EQ(found.w.v[k], texel(x - 1, y - 1)) << x << ' ' << y;
+            }
+        }
+}
+
 class Pictures : public testing::Test {
   protected:
     static constexpr int width = 5, height = 4;

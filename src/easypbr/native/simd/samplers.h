@@ -335,10 +335,23 @@ INLINE vec4 textureLod(const Layers& s, const vec3& place, float) {
         layer_texel(s, to_int(floor(place.x * size)), to_int(floor(place.y * size)), to_int(place.z + 0.5f)),
         0.0f, 0.0f, 1.0f};
 }
+/// As that of pictures; away from the borders a lane's texels are two pairs, which are read as such.
 INLINE vec4 textureGather(const Layers& s, const vec3& place) {
     const float size = float(s.size);
     const vint x = to_int(floor(place.x * size - 0.5f)), y = to_int(floor(place.y * size - 0.5f)),
                layer = to_int(place.z + 0.5f);
+    const int last = s.size - 2;
+    if (!any_lane(x < 0 || x > last || y < 0 || y > last)) {
+        const vint index = (layer * s.size + y) * s.size + x;
+        Floats4 pairs[lanes];
+        for (int k = 0; k < lanes; ++k) {
+            const float* const row = s.data + index.v[k];
+            std::memcpy(&pairs[k], row, 8);
+            std::memcpy(reinterpret_cast<std::byte*>(&pairs[k]) + 8, row + s.size, 8);
+        }
+        const vec4 c = planar(pairs);
+        return {c.z, c.w, c.y, c.x};
+    }
     return {layer_texel(s, x, y + 1, layer), layer_texel(s, x + 1, y + 1, layer),
             layer_texel(s, x + 1, y, layer), layer_texel(s, x, y, layer)};
 }
