@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/named_colors.h"
@@ -67,7 +68,7 @@ Vec3 linear_from_srgb(const Vec3& c) {
     const float* const of_code = srgb8_table();
     return c.unaryExpr([&](float v) {
         // Most colours come from files of 8 bits.
-        const size_t code = v >= 0 && v <= 1 ? size_t(v * 255 + 0.5f) : 0;
+        const size_t code = v >= 0 && v <= 1 ? size_t(std::lrint(v * 255)) : 0;
         return float(code) / 255 == v ? of_code[code] : linear_from_srgb(v);
     });
 }
