@@ -43,48 +43,6 @@ INLINE Ints8 widened(Shorts8 v) {
 #endif
 }
 
-/// Four channels of each lane, from one pixel per lane.
-INLINE vec4 channels_of(const Floats4* pixels) {
-    vec4 c;
-    for (int k = 0; k < lanes; ++k) {
-        c.x.v[k] = pixels[k][0];
-        c.y.v[k] = pixels[k][1];
-        c.z.v[k] = pixels[k][2];
-        c.w.v[k] = pixels[k][3];
-    }
-    return c;
-}
-#if defined(__AVX2__)
-/// The same for 8 lanes: a transposition.
-INLINE void transpose8(const Floats4* p, Floats8* to) {
-    const __m256 a = _mm256_set_m128(p[4], p[0]), b = _mm256_set_m128(p[5], p[1]),
-                 c = _mm256_set_m128(p[6], p[2]), d = _mm256_set_m128(p[7], p[3]);
-    const __m256 ab_low = _mm256_unpacklo_ps(a, b), ab_high = _mm256_unpackhi_ps(a, b),
-                 cd_low = _mm256_unpacklo_ps(c, d), cd_high = _mm256_unpackhi_ps(c, d);
-    to[0] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0x44));
-    to[1] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0xee));
-    to[2] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0x44));
-    to[3] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0xee));
-}
-#endif
-INLINE vec4 planar(const Floats4* pixels) {
-#if defined(__AVX512F__)
-    Floats8 low[4], high[4];
-    transpose8(pixels, low);
-    transpose8(pixels + 8, high);
-    const auto both = [&](int i) {
-        return vfloat(Floats(_mm512_insertf32x8(_mm512_castps256_ps512(low[i]), high[i], 1)));
-    };
-    return {both(0), both(1), both(2), both(3)};
-#elif defined(__AVX2__)
-    Floats8 c[4];
-    transpose8(pixels, c);
-    return {vfloat(c[0]), vfloat(c[1]), vfloat(c[2]), vfloat(c[3])};
-#else
-    return channels_of(pixels);
-#endif
-}
-
 // Values of two vectors by turns, the first halves and the last ones; and every second value of both.
 #if defined(__AVX512F__)
 #define ZIPPED_FIRST 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
@@ -127,6 +85,38 @@ INLINE vec4 planar(const PixelRow& row) {
 #undef EVEN
 #undef ZIPPED_LAST
 #undef ZIPPED_FIRST
+
+#if defined(__AVX2__)
+/// Four channels of 8 pixels: a transposition.
+INLINE void transpose8(const Floats4* p, Floats8* to) {
+    const __m256 a = _mm256_set_m128(p[4], p[0]), b = _mm256_set_m128(p[5], p[1]),
+                 c = _mm256_set_m128(p[6], p[2]), d = _mm256_set_m128(p[7], p[3]);
+    const __m256 ab_low = _mm256_unpacklo_ps(a, b), ab_high = _mm256_unpackhi_ps(a, b),
+                 cd_low = _mm256_unpacklo_ps(c, d), cd_high = _mm256_unpackhi_ps(c, d);
+    to[0] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0x44));
+    to[1] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0xee));
+    to[2] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0x44));
+    to[3] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0xee));
+}
+#endif
+/// Four channels of each lane, from one pixel per lane.
+INLINE vec4 planar(const Floats4* pixels) {
+#if defined(__AVX512F__)
+    Floats8 low[4], high[4];
+    transpose8(pixels, low);
+    transpose8(pixels + 8, high);
+    const auto both = [&](int i) {
+        return vfloat(Floats(_mm512_insertf32x8(_mm512_castps256_ps512(low[i]), high[i], 1)));
+    };
+    return {both(0), both(1), both(2), both(3)};
+#elif defined(__AVX2__)
+    Floats8 c[4];
+    transpose8(pixels, c);
+    return {vfloat(c[0]), vfloat(c[1]), vfloat(c[2]), vfloat(c[3])};
+#else
+    return planar(load<PixelRow>(pixels));
+#endif
+}
 
 INLINE uint32_t bits_of(float v) {
     return load<uint32_t>(&v);
