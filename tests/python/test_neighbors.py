@@ -34,6 +34,39 @@ def test_within_gives_offsets():
     np.testing.assert_array_equal(distances, [0, 5])
 
 
+@pytest.mark.parametrize("where", [(5e5, 5.4e6, 300), (-1e4, 0, 0), (1000, 0, 0)])
+@pytest.mark.parametrize("extent", [1.0, 1e-3])
+def test_points_far_from_zero_are_told_apart(where, extent):
+    points = np.array(where) + extent * np.random.default_rng(3).random((1000, 3))
+    queries = points[:20] + 0.01 * extent
+    all_distances = np.linalg.norm(points[None] - queries[:, None], axis=2)
+    distances, indices = KdTree(points).nearest(queries, k=2)
+    # The coordinates themselves are rounded to 2^-53 of 5.4e6, which is 6e-10, and what is left to float32.
+    np.testing.assert_allclose(distances, np.sort(all_distances, axis=1)[:, :2], atol=2e-9 + 1e-6 * extent)
+    if extent == 1:
+        np.testing.assert_array_equal(indices, np.argsort(all_distances, axis=1)[:, :2])
+    found, _, offsets = KdTree(points).within(queries, 0.2 * extent)
+    np.testing.assert_allclose(np.diff(offsets), (all_distances < 0.2 * extent).sum(axis=1), atol=1)
+    assert found.max() <= np.float32(0.2 * extent)
+
+
+def test_queries_of_another_type_than_the_points_keep_their_precision():
+    points = np.array([[5e5, 5.4e6, 0], [5e5 + 1, 5.4e6, 0], [5e5 + 2, 5.4e6, 0]])
+    query = [[5e5 + 0.25, 5.4e6, 0]]
+    for given in (points, points.astype(np.int64), points.astype(np.float32)):  # All of them hold these exactly.
+        distances, indices = KdTree(given).nearest(query, k=3)
+        np.testing.assert_array_equal(distances, [[0.25, 0.75, 1.75]])
+        np.testing.assert_array_equal(indices, [[0, 1, 2]])
+
+
+def test_a_stray_point_does_not_decide_the_precision():
+    points = np.array([5e5, 5.4e6, 300]) + np.random.default_rng(4).random((1000, 3))
+    points[7] = 0
+    distances, indices = KdTree(points).nearest(points, k=1)
+    np.testing.assert_array_equal(indices[:, 0], np.arange(1000))
+    assert (distances[np.arange(1000) != 7] == 0).all()
+
+
 @pytest.mark.parametrize("call, message", [
     (lambda: KdTree(np.zeros((0, 3))), "at least one point"),
     (lambda: KdTree(np.zeros((5, 2))), "expected n x 3, got 5 x 2"),

@@ -64,6 +64,14 @@ TEST(Offset, IsZeroWhereFloat32Holds) {
     EXPECT_EQ(Array3f::Dense(local_positions(near).V), Array3f::Dense(near.cast<float>()));
 }
 
+TEST(Offset, IsFoundNearZeroWhereOnlyTheExtentCounts) {
+    // 10 is farther than 4 times the extent of 2 from zero, but nearer than 1024.
+    const std::vector<Vec3d> samples{{8, 6, 0}, {10, 6, 0}};
+    EXPECT_EQ(offset_of_samples(samples), Vec3d::Zero());
+    EXPECT_EQ(offset_of_samples(samples, 0), Vec3d(9, 6, 0));
+    EXPECT_EQ(offset_of_samples({{3, 0, 0}, {5, 0, 0}}, 0), Vec3d::Zero());
+}
+
 TEST(Offset, HoldsForOnePointAndForEqualPoints) {
     EXPECT_EQ(local_positions(Positions{{500'000.125, 4'000'000.25, 17}}).offset,
               Vec3d(500'000, 4'000'000, 17));

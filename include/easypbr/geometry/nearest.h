@@ -12,7 +12,8 @@
 namespace easypbr {
 
 /// k-d tree over the rows of an n x 3 array. Immutable and shared by handle; queries from any thread, many at
-/// once in parallel. Distances are Euclidean, in single precision.
+/// once in parallel. Distances are Euclidean, in single precision: points far from zero for their extent
+/// need an offset that is subtracted before (as that of MeshData::V), from queries too.
 class KdTree {
   public:
     template <class Scalar>

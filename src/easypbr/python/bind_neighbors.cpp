@@ -9,19 +9,21 @@
 namespace easypbr::python {
 namespace {
 
-Array3f to_points(nb::handle object, const char* name) {
-    return to_array<float, 3>(object, {name, 3, 3});
-}
+/// A tree of points less an offset, so that float32 tells those far from zero apart.
+struct LocalTree {
+    KdTree tree;
+    Vec3d offset;
+};
 
-nb::tuple find_nearest(const KdTree& tree, const ArrayLike& queries, int k) {
-    const Array3f points = to_points(queries, "queries");
-    KdTree::Nearest found = released([&] { return tree.nearest(points, k); });
+nb::tuple find_nearest(const LocalTree& local, const ArrayLike& queries, int k) {
+    const Array3f points = to_local(queries, {"queries", 3, 3}, local.offset);
+    KdTree::Nearest found = released([&] { return local.tree.nearest(points, k); });
     return nb::make_tuple(owning_array(std::move(found.distances)), owning_array(std::move(found.indices)));
 }
 
-nb::tuple within(const KdTree& tree, const ArrayLike& queries, float radius) {
-    const Array3f points = to_points(queries, "queries");
-    KdTree::Within found = released([&] { return tree.within(points, radius); });
+nb::tuple find_within(const LocalTree& local, const ArrayLike& queries, float radius) {
+    const Array3f points = to_local(queries, {"queries", 3, 3}, local.offset);
+    KdTree::Within found = released([&] { return local.tree.within(points, radius); });
     return nb::make_tuple(owning_array(std::move(found.distances)), owning_array(std::move(found.indices)),
                           owning_array(std::move(found.offsets)));
 }
@@ -33,20 +35,24 @@ NeighborhoodOptions options(int k, const nb::object& viewpoint) {
 }
 
 void bind_kd_tree(nb::module_& module) {
-    nb::class_<KdTree>(module, "KdTree", "Nearest neighbours among the rows of an n x 3 array.")
+    nb::class_<LocalTree>(
+        module, "KdTree",
+        "Nearest neighbours among the rows of an n x 3 array. float64 points far from zero, as of UTM "
+        "coordinates, are told apart: both points and queries are recentred in double precision. Distances "
+        "are float32.")
         .def(
             "__init__",
-            [](KdTree* self, const ArrayLike& points) {
-                const Array3f rows = to_points(points, "points");
-                released([&] { new (self) KdTree(rows); });
+            [](LocalTree* self, const ArrayLike& points) {
+                const LocalPositions local = to_points(points, {"points", 3, 3});
+                released([&] { new (self) LocalTree{KdTree(local.V), local.offset}; });
             },
             nb::arg("points"))
-        .def("__len__", &KdTree::size)
+        .def("__len__", [](const LocalTree& local) { return local.tree.size(); })
         .def("nearest", find_nearest, nb::arg("queries"), nb::arg("k") = 1,
              nb::sig("def nearest(self, queries: numpy.typing.ArrayLike, k: int = 1) -> tuple[numpy.ndarray, "
                      "numpy.ndarray]"),
              "Distances and indices, both m x k, of the k nearest points of each query, nearest first.")
-        .def("within", within, nb::arg("queries"), nb::arg("radius"),
+        .def("within", find_within, nb::arg("queries"), nb::arg("radius"),
              nb::sig(
                  "def within(self, queries: numpy.typing.ArrayLike, radius: float) -> tuple[numpy.ndarray, "
                  "numpy.ndarray, numpy.ndarray]"),

@@ -69,12 +69,13 @@ Layout layout_of(const AnyArray& array, const ArrayShape& shape) {
 }
 
 template <class Element>
-Vec3d offset_for(const Element* data, const Layout& layout) {
-    return choose_offset(size_t(layout.rows), [&](size_t row) {
+Vec3d offset_for(const Element* data, const Layout& layout, double near) {
+    const auto position = [&](size_t row) {
         const Element* first = data + int64_t(row) * layout.row_stride;
         return Vec3d(double(first[0]), double(first[layout.col_stride]),
                      double(first[2 * layout.col_stride]));
-    });
+    };
+    return choose_offset(size_t(layout.rows), position, near);
 }
 
 /// result(row, col) = convert(element, col), in parallel.
@@ -103,6 +104,17 @@ void copy_floats(Dense& result, const Element* data, const Layout& layout, bool 
     copy_rows(result, data, layout, [scale](Element value, Eigen::Index) { return float(value) * scale; });
 }
 
+template <class Element>
+Array3f copy_local(const Element* data, const Layout& layout, const Vec3d& offset) {
+    Array3f::Dense rows(layout.rows, layout.cols);
+    if (offset.isZero(0))
+        copy_floats(rows, data, layout, false);
+    else
+        copy_rows(rows, data, layout,
+                  [&](Element value, Eigen::Index col) { return float(double(value) - offset[col]); });
+    return rows;
+}
+
 template <class Dense, class Element>
 void copy_integers(Dense& result, const Element* data, const Layout& layout, const AnyArray& array,
                    const ArrayShape& shape) {
@@ -116,6 +128,14 @@ void copy_integers(Dense& result, const Element* data, const Layout& layout, con
         throw ArgumentError(fmt::format(
             "mesh array {}: expected whole numbers from -2147483648 to 2147483647, got others in {}",
             shape.name, shape_text(array)));
+}
+
+/// Calls visit(pointer to the object's numbers, layout), without the GIL.
+template <class Visit>
+void visit_rows(nb::handle object, const ArrayShape& shape, const Visit& visit) {
+    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
+    const Layout layout = layout_of(array, shape);
+    released([&] { visit_elements(array, [&](const auto* data) { visit(data, layout); }); });
 }
 
 /// Numbers of an object that must have exactly `rows` x `cols` of them (a vector when rows is 1).
@@ -258,21 +278,28 @@ typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape
 }
 
 LocalPositions to_positions(nb::handle object, const ArrayShape& shape) {
-    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
-    const Layout layout = layout_of(array, shape);
-    Array3f::Dense V(layout.rows, layout.cols);
     LocalPositions result;
-    released([&] {
-        visit_elements(array, [&](const auto* data) {
-            using Element = std::remove_cvref_t<decltype(*data)>;
-            if (!std::is_same_v<Element, float>) result.offset = offset_for(data, layout);
-            if (result.offset.isZero(0)) return copy_floats(V, data, layout, false);
-            copy_rows(V, data, layout, [&](Element value, Eigen::Index col) {
-                return float(double(value) - result.offset[col]);
-            });
-        });
+    visit_rows(object, shape, [&](const auto* data, const Layout& layout) {
+        using Element = std::remove_cvref_t<decltype(*data)>;
+        if (!std::is_same_v<Element, float>) result.offset = offset_for(data, layout, near_zero);
+        result.V = copy_local(data, layout, result.offset);
     });
-    result.V = std::move(V);
+    return result;
+}
+
+LocalPositions to_points(nb::handle object, const ArrayShape& shape) {
+    LocalPositions result;
+    visit_rows(object, shape, [&](const auto* data, const Layout& layout) {
+        result.offset = offset_for(data, layout, 0);
+        result.V = copy_local(data, layout, result.offset);
+    });
+    return result;
+}
+
+Array3f to_local(nb::handle object, const ArrayShape& shape, const Vec3d& offset) {
+    Array3f result;
+    visit_rows(object, shape,
+               [&](const auto* data, const Layout& layout) { result = copy_local(data, layout, offset); });
     return result;
 }
 

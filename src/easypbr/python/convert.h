@@ -79,6 +79,13 @@ typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape
 /// float32 would lose what matters (scene/offset.h); the offset is what was subtracted. Throws as to_array().
 LocalPositions to_positions(nb::handle object, const ArrayShape& shape);
 
+/// The object's numbers, of any type, as points whose distances matter: recentred wherever they are far from
+/// zero for their extent. Throws as to_array().
+LocalPositions to_points(nb::handle object, const ArrayShape& shape);
+
+/// The object's numbers less an offset, subtracted in double precision. Throws as to_array().
+Array3f to_local(nb::handle object, const ArrayShape& shape, const Vec3d& offset);
+
 /// The read-only numpy array as one that other libraries take by DLPack too (easypbr.tensors.SharedArray).
 nb::object shareable(const nb::object& array);
 

@@ -7,7 +7,6 @@
 namespace easypbr {
 namespace {
 
-constexpr double farthest_near = 1024;  ///< float32 numbers are 2^-13 = 0.12 mm apart from here on
 constexpr double far_in_extents = 4;
 
 /// The interval of the middle 90 %; all of it for up to 20 values.
@@ -32,7 +31,7 @@ double rounded(double value, int decimals) {
 
 }  // namespace
 
-Vec3d offset_of_samples(std::vector<Vec3d> samples) {
+Vec3d offset_of_samples(std::vector<Vec3d> samples, double near) {
     std::erase_if(samples, [](const Vec3d& p) { return !p.cast<float>().allFinite(); });
     if (samples.empty()) return Vec3d::Zero();
     Vec3d centre;
@@ -45,7 +44,7 @@ Vec3d offset_of_samples(std::vector<Vec3d> samples) {
         extent = std::max(extent, middle.high - middle.low);
         farthest = std::max({farthest, std::abs(middle.low), std::abs(middle.high)});
     }
-    if (farthest <= farthest_near || farthest <= far_in_extents * extent) return Vec3d::Zero();
+    if (farthest <= near || farthest <= far_in_extents * extent) return Vec3d::Zero();
     const int decimals = extent > 0 ? -int(std::floor(std::log10(extent / 4))) : 0;
     return centre.unaryExpr([&](double value) { return rounded(value, std::clamp(decimals, -30, 12)); });
 }

@@ -10,13 +10,17 @@
 
 namespace easypbr {
 
+/// Numbers of float32 are 2^-13 = 0.12 mm apart from here on, the unit being the metre.
+inline constexpr double near_zero = 1024;
+
 /// What to subtract from positions, in double precision, before they become float32. Zero unless float32
 /// would lose what matters: where the spacing of its numbers at the farthest coordinate is more than 0.1 mm
 /// (farther than 1024 from zero, the unit being the metre) and more than half a millionth of the extent
 /// (farther than 4 times the extent). Extent and centre are those of the box that holds the middle 90 % of
 /// the samples on each axis, so that a stray point decides nothing; the offset is the centre rounded to a
-/// decimal place that fits the extent. Samples beyond the range of float32 are ignored.
-Vec3d offset_of_samples(std::vector<Vec3d> samples);
+/// decimal place that fits the extent. Samples beyond the range of float32 are ignored. `near`: how far from
+/// zero positions may be without an offset, whatever their extent.
+Vec3d offset_of_samples(std::vector<Vec3d> samples, double near = near_zero);
 
 /// Number of positions that are looked at for a decision.
 inline constexpr size_t offset_sample_count = 1024;
@@ -28,10 +32,10 @@ constexpr size_t spread_row(size_t i, size_t count, size_t rows) {
 
 /// offset_of_samples() of positions spread over the rows; at(i) gives row i as Vec3d.
 template <class At>
-Vec3d choose_offset(size_t rows, At&& at) {
+Vec3d choose_offset(size_t rows, At&& at, double near = near_zero) {
     std::vector<Vec3d> samples(std::min(rows, offset_sample_count));
     for (size_t i = 0; i < samples.size(); ++i) samples[i] = at(spread_row(i, samples.size(), rows));
-    return offset_of_samples(std::move(samples));
+    return offset_of_samples(std::move(samples), near);
 }
 
 /// Positions in double precision as local ones: given = offset + V.
