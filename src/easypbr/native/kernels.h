@@ -256,6 +256,9 @@ struct PointBatch {
     float left = 0, top = 0, right = 0, bottom = 0;  ///< of what is drawn
     float pixels = 1, world_pixels = 0, least_pixels = 1, y_per_x = 1;
     bool round = true;
+    /// Pixels of what is drawn, row by row, whose upper halves are the bits of the depth that is seen there:
+    /// others may draw meanwhile, but depths only rise. Null: nothing is left out for them.
+    const uint64_t* seen = nullptr;
 };
 
 /// The points on the screen. Lanes beyond the last are written.
@@ -264,9 +267,9 @@ struct PointScreen {
 
     alignas(64) float x[room], y[room], radius[room], depth[room];
     /// Of splats that are as high as wide and less than 2 pixels: a bit for each of the pixels (column,
-    /// line), (column + 1, line) and the two below that they cover. Of others all bits.
+    /// line), (column + 1, line) and the two below that they cover and are not hidden in. Of others all bits.
     alignas(64) int32_t column[room], line[room], covered[room];
-    uint16_t kept[room];  ///< those inside of what is drawn, in their order
+    uint16_t kept[room];  ///< those inside of what is drawn that may be seen, in their order
 };
 
 /// Ellipses in space that are neighbours, on their way to the screen.

@@ -5,9 +5,18 @@
 
 namespace easypbr::native::EASYPBR_ISA {
 
-/// The pixels of two columns and lines that splats of less than 2 pixels cover: as PointRaster::cover()
-/// finds.
-INLINE void set_covered(const PointBatch& b, const vec2& at, vfloat radius, int first, PointScreen& screen) {
+/// The bits of the depths that are seen at pixels.
+INLINE vint seen_at(const uint64_t* pixels, vint index) {
+    Ints r;
+    for (int k = 0; k < lanes; ++k)
+        r[k] = int32_t(__atomic_load_n(pixels + index.v[k], __ATOMIC_RELAXED) >> 32);
+    return r;
+}
+
+/// Sets the pixels of two columns and lines that splats of less than 2 pixels cover, as PointRaster::cover()
+/// finds them, without those that nearer ones are seen in. Returns false where none is left.
+INLINE vbool set_covered(const PointBatch& b, const vec2& at, vfloat radius, vfloat depth, vbool kept,
+                         int first, PointScreen& screen) {
     const vbool is_tiny = radius <= 0.5f;
     const vint own_x = to_int(floor(at.x)), own_y = to_int(floor(at.y));
     const vint x0 = select(is_tiny, own_x, to_int(ceil(at.x - radius - 0.5f))),
@@ -15,19 +24,25 @@ INLINE void set_covered(const PointBatch& b, const vec2& at, vfloat radius, int 
                y0 = select(is_tiny, own_y, to_int(ceil(at.y - radius - 0.5f))),
                y1 = select(is_tiny, own_y, to_int(floor(at.y + radius - 0.5f)));
     const vint left = int(b.left), right = int(b.right), top = int(b.top), bottom = int(b.bottom);
+    const vbool is_small = vbool(b.y_per_x == 1.0f) && radius < 1.0f;
+    const vint width = right - left, bits = Ints(depth.v);
     vint covered = 0;
     for (int i = 0; i < 4; ++i) {
         const vint x = x0 + (i & 1), y = y0 + (i >> 1);
         const vfloat dx = to_float(x) + 0.5f - at.x, dy = to_float(y) + 0.5f - at.y;
         const vbool within = dx * dx + dy * dy <= radius * radius, own = x == own_x && y == own_y;
-        const vbool is_covered = x <= x1 && y <= y1 && (vbool(!b.round) || within || own) && x >= left &&
-                                 x < right && y >= top && y < bottom;
+        vbool is_covered = kept && is_small && x <= x1 && y <= y1 && (vbool(!b.round) || within || own) &&
+                           x >= left && x < right && y >= top && y < bottom;
+        if (b.seen)
+            is_covered =
+                is_covered && seen_at(b.seen, select(is_covered, (y - top) * width + x - left, vint(0))) <= bits;
         covered |= select(is_covered, 1 << i, 0);
     }
-    covered = select(vbool(b.y_per_x == 1.0f) && radius < 1.0f, covered, vint(-1));
+    covered = select(is_small, covered, vint(-1));
     std::memcpy(screen.column + first, &x0.v, sizeof x0.v);
     std::memcpy(screen.line + first, &y0.v, sizeof y0.v);
     std::memcpy(screen.covered + first, &covered.v, sizeof covered.v);
+    return covered != 0;
 }
 
 /// As PointRaster::project() does, to the same bits.
@@ -51,8 +66,8 @@ inline int set_up_points(const PointBatch& b, PointScreen& screen) {
         std::memcpy(screen.y + first, &y.v, sizeof y.v);
         std::memcpy(screen.radius + first, &rx.v, sizeof rx.v);
         std::memcpy(screen.depth + first, &depth.v, sizeof depth.v);
-        set_covered(b, {x, y}, rx, first, screen);
-        for (unsigned waiting = lane_bits(kept); waiting != 0; waiting &= waiting - 1)
+        const vbool is_seen = kept && set_covered(b, {x, y}, rx, depth, kept, first, screen);
+        for (unsigned waiting = lane_bits(is_seen); waiting != 0; waiting &= waiting - 1)
             screen.kept[count++] = uint16_t(first + __builtin_ctz(waiting));
     }
     return count;

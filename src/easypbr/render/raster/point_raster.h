@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -66,9 +67,10 @@ class PointRaster {
 
     /// Calls draw(depth, vertex, cover) for all points that project() finds inside, on all cores; cover(put)
     /// calls put(column, line) as the function below does, for the whole area. Batches are left out where
-    /// depths.hides(bounds).
+    /// depths.hides(bounds), and pixels where `seen`, unless it is null, is nearer: see native::PointBatch.
     template <class Draw, class Depths>
-    void draw_batches(const PointBatches& batches, const Draw& draw, Depths& depths) const {
+    void draw_batches(const PointBatches& batches, const Draw& draw, Depths& depths,
+                      const uint64_t* seen) const {
         constexpr size_t grain = 16;
         const SphereCulling culling = sphere_culling();
         const auto depth = [&](size_t i) {
@@ -76,6 +78,7 @@ class PointRaster {
         };
         visit_near_to_far(batches.count(), grain, depth, [&](std::span<const uint32_t> near) {
             native::PointBatch own = batch();
+            own.seen = seen;
             native::PointScreen screen;
             NeighborsHidden hidden(depths);
             for (const uint32_t i : near) {
@@ -122,8 +125,10 @@ class PointRaster {
         const int covered = screen.covered[at];
         if (covered >= 0) {
             const int x = screen.column[at], y = screen.line[at];
-            for (int i = 0; i < 4; ++i)
-                if (covered >> i & 1) put(x + (i & 1), y + (i >> 1));
+            for (unsigned left = unsigned(covered); left != 0; left &= left - 1) {
+                const int i = std::countr_zero(left);
+                put(x + (i & 1), y + (i >> 1));
+            }
             return;
         }
         const float rx = screen.radius[at];

@@ -214,7 +214,8 @@ void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, 
             if (order.takes(pixel, depth)) raise_point(pixels_[pixel], key, content);
         });
     };
-    if (splats.batches) return raster.draw_batches(*splats.batches, draw, *this);
+    if (splats.batches)
+        return raster.draw_batches(*splats.batches, draw, *this, limits_ ? nullptr : pixels_.data());
     parallel_for(size_t(V.rows()), point_grain, [&](size_t i) {
         const ScreenPoint point = raster.project(V.data() + 3 * i);
         if (point.depth > 0)
