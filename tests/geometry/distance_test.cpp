@@ -127,6 +127,18 @@ TEST(SurfaceDistance, CountsDescendantsAndRefusesNothing) {
     EXPECT_THROW(surface_distance(make_plane(), make_plane(), -1), ArgumentError);
 }
 
+TEST(SurfaceDistance, IsThatOfPlacesWithTheirOffsets) {
+    const Vec3d utm(691000, 5335000, 520);
+    Mesh a = make_box(), b = make_box();
+    a.set_offset(utm);
+    b.set_offset(utm + Vec3d(10, 0, 0));
+    // The far side of a box of 1 is 10 from that of the other.
+    EXPECT_NEAR(surface_distance(a, b).max, 10, 1e-6);
+    EXPECT_NEAR(hausdorff_distance(a, b), 10, 1e-6);
+    b.set_offset(utm);
+    EXPECT_NEAR(surface_distance(a, b).max, 0, 1e-9);
+}
+
 TEST(SampleSurface, IsUniformByArea) {
     // Two triangles with areas 3 : 1.
     MeshData data;

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/geometry/sample.h"
 #include "geometry/measure.h"
 
 namespace easypbr::place_test {
@@ -129,6 +130,48 @@ TEST(OrientedBoundingBox, OfWhatHasNoVolume) {
     EXPECT_EQ(point.size, Vec3d(0, 0, 0));
     EXPECT_EQ(point.T_world_box.translation(), Vec3d(1, 2, 3));
     EXPECT_THROW(oriented_bounding_box(Mesh()), ArgumentError);
+}
+
+/// Far from zero, as in UTM's coordinates: `V` at `at`, by its offset.
+Mesh far_away(const Mesh& mesh, const Vec3d& at) {
+    Mesh result = mesh.clone();
+    result.set_offset(at);
+    return result;
+}
+
+const Vec3d utm(691000, 5335000, 520);
+
+TEST(FarMesh, IsTransformedAsItsCoordinatesAre) {
+    Mesh far = far_away(make_box(), utm), child = far_away(make_box(), utm + Vec3d(0, 3, 0));
+    far.add_child(child);
+    // T moves (x, y, z) to (-2 y + 7, 2 x, 2 z).
+    const Eigen::Affine3d T = Eigen::Translation3d(7, 0, 0) * turn(90, Vec3d::UnitZ()) * Eigen::Scaling(2.0);
+    const Box3d box = bounding_box(transformed(far, T));
+    const Vec3d centre = 2 * Vec3d(-utm.y(), utm.x(), utm.z()) + Vec3d(7, 0, 0);
+    // Of a box of 1 and one that is 3 further along y: from centre.x - 7 to centre.x + 1. float32 of places
+    // within 10 of the offset, which doubles at 1e7 hold to 2e-9.
+    EXPECT_NEAR(box.min().x(), centre.x() - 7, 1e-5);
+    EXPECT_NEAR(box.max().x(), centre.x() + 1, 1e-5);
+    EXPECT_NEAR(box.min().y(), centre.y() - 1, 1e-5);
+    EXPECT_NEAR(box.max().z(), centre.z() + 1, 1e-5);
+}
+
+TEST(FarMesh, IsBroughtToZero) {
+    const Mesh far = far_away(make_box(), utm), near = centered(far),
+               moved = transformed(far, Eigen::Affine3d(Eigen::Translation3d(-utm)));
+    for (const Mesh& mesh : {near, moved}) {
+        EXPECT_EQ(mesh.offset(), Vec3d(0, 0, 0));
+        EXPECT_TRUE(bounding_box(mesh).isApprox(Box3d(Vec3d(-0.5, -0.5, -0.5), Vec3d(0.5, 0.5, 0.5))));
+    }
+    // About the origin of its coordinates.
+    EXPECT_TRUE(with_size(far, 2).offset().isApprox(2 * utm));
+}
+
+TEST(FarMesh, HasItsBoxesWhereItIs) {
+    const Mesh far = far_away(make_box(), utm);
+    EXPECT_EQ(bounding_box(far).center(), utm);
+    EXPECT_TRUE(oriented_bounding_box(far).T_world_box.translation().isApprox(utm));
+    EXPECT_EQ(crop_box(far, bounding_box(far)).V().rows(), far.V().rows());
 }
 
 }  // namespace

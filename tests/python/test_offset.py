@@ -76,3 +76,23 @@ def test_scene_has_an_origin(grid):
     np.testing.assert_array_equal(scene.origin, UTM)
     with pytest.raises(ValueError, match="origin"):
         scene.origin = (0, 0, np.inf)
+
+
+def test_points_of_geometry_functions_include_the_offset() -> None:
+    utm = np.array([691000.0, 5335000.0, 520.0])
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    mesh = Mesh(utm + square, [[0, 1, 2], [0, 2, 3]])
+    np.testing.assert_allclose(mesh.bounding_box(), utm + [[0, 0, 0], [1, 1, 0]], atol=1e-6)
+    assert len(mesh.crop_box(*mesh.bounding_box()).V) == 4
+    distance, face, point = mesh.closest_points(utm + [[0.75, 0.25, 2]])
+    np.testing.assert_allclose(distance, [2], atol=1e-6)
+    np.testing.assert_allclose(point, utm + [[0.75, 0.25, 0]], atol=1e-6)
+    assert face[0] == 0
+
+
+def test_normals_turn_to_a_viewpoint_far_from_zero() -> None:
+    utm = np.array([691000.0, 5335000.0, 520.0])
+    grid = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0), [0.0], indexing="ij"), -1).reshape(-1, 3)
+    for side in (1, -1):
+        normals = Mesh(utm + grid).estimate_normals(viewpoint=utm + [10, 10, side * 5]).N
+        np.testing.assert_allclose(normals, np.tile([0, 0, side], (400, 1)), atol=1e-5)

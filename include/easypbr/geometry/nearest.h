@@ -52,7 +52,8 @@ class KdTree {
 
 /// Nearest points of a surface: exact distances from points to triangles, found through a tree of bounding
 /// boxes. Of a mesh without faces the nearest vertices. Descendants do not count. Immutable, shared by
-/// handle; queries from any thread, many at once in parallel. Computed in double precision.
+/// handle; queries from any thread, many at once in parallel. Computed in double precision, relative to the
+/// mesh's offset.
 class SurfaceTree {
   public:
     /// Throws ArgumentError when there are no vertices.

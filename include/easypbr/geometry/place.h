@@ -8,7 +8,7 @@
 
 namespace easypbr {
 
-/// A new mesh whose vertices are at T x, with normals, windings and surfels as transformed(MeshData) has
+/// A new mesh whose vertices, offset included, are at T x, with normals, windings and surfels as transformed(MeshData) has
 /// them; the descendants follow. Its own pose stays. Throws ArgumentError when T is not finite or cannot be
 /// inverted.
 Mesh transformed(const Mesh& mesh, const Eigen::Affine3d& T);
@@ -19,9 +19,11 @@ Mesh transformed(const Mesh& mesh, const Eigen::Affine3d& T);
 Mesh merged(std::span<const Mesh> meshes);
 
 /// Box of all vertices, descendants included, after T; exact under rotation, since it is the box of the
-/// turned vertices and not that of a turned box. Throws ArgumentError when there are no vertices.
+/// turned vertices and not that of a turned box. T acts on what is relative to the mesh's offset, as poses
+/// do; the offset is added after: less Scene::origin() the box is in the scene's frame. Throws ArgumentError
+/// when there are no vertices.
 Box3d bounding_box(const Mesh& mesh, const Eigen::Affine3d& T_world_mesh);
-/// The same in the frame of the mesh's parent, the world for a mesh that is shown.
+/// The same after the mesh's own pose.
 Box3d bounding_box(const Mesh& mesh);
 
 /// The mesh moved so that the middle of its bounding box is its own origin.
@@ -36,7 +38,7 @@ struct OrientedBox {
     Vec3d size{0, 0, 0};                                            ///< lengths along its axes, falling
 };
 
-/// A small box around all vertices in the frame of the mesh's parent. Its axes start as the principal ones of
+/// A small box around all vertices after the mesh's pose, its offset added as bounding_box() does. Its axes start as the principal ones of
 /// the vertices and as those of the frame; then, along each axis in turn, the rectangle of least area around
 /// the vertices' projection (rotating calipers, Toussaint 1983) replaces the other two as long as the volume
 /// falls. The least volume itself is not promised. Never larger than bounding_box(). Throws ArgumentError

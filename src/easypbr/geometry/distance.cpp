@@ -38,9 +38,12 @@ bool has_area(const MeshData& mesh) {
 
 SurfaceDistance surface_distance(const Mesh& from, const Mesh& to, int64_t samples, uint64_t seed) {
     geometry::require_between("surface distance: samples", samples, 0, std::numeric_limits<int32_t>::max());
-    const MeshData a = flatten(from);
+    const MeshData b = flatten(to);
+    MeshData a = flatten(from);
     geometry::require_vertices("surface distance", a);
-    const SurfaceTree tree(flatten(to));
+    a.V = positions_from(a, b.offset);
+    a.offset = b.offset;
+    const SurfaceTree tree(b);
     SurfaceDistance result = summary(tree.nearest(a.V).distance);
     if (samples == 0 || !has_area(a)) return result;
     const double at_vertices = result.max;

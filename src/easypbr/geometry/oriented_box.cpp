@@ -165,7 +165,7 @@ OrientedBox oriented_bounding_box(const Mesh& mesh) {
     const Mat3d candidates[2] = {refined_axes(points, principal), refined_axes(points, Mat3d::Identity())};
     const bool first = is_smaller(extent(points, candidates[0]), extent(points, candidates[1]));
     OrientedBox box = box_along(points, candidates[first ? 0 : 1]);
-    box.T_world_box.pretranslate(mean.transpose());
+    box.T_world_box.pretranslate(mean.transpose() + flat.offset);
     return box;
 }
 

@@ -3,16 +3,30 @@
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/scene/merge.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr {
 namespace {
 
-/// The mesh after T in its own frame, children moved along.
+/// The mesh's arrays after T, which moves offset + V. The offset is chosen anew where there is one.
+MeshData moved_arrays(const MeshData& mesh, const Eigen::Affine3d& T) {
+    if (mesh.offset.isZero(0)) return transformed(mesh, T);
+    MeshData data = transformed(mesh, Eigen::Affine3d(T.linear()));
+    LocalPositions positions = local_positions(data.V.cast<double>().rowwise() + (T * mesh.offset).transpose());
+    data.V = std::move(positions.V);
+    data.offset = positions.offset;
+    return data;
+}
+
+/// The mesh after T in its own frame, children moved along. Poses act on what is relative to the offset of
+/// the tree, which may become another one.
 Mesh moved(const Mesh& mesh, const Eigen::Affine3d& T) {
-    MeshData data = transformed(*mesh.snapshot(), T);
+    MeshData data = moved_arrays(*mesh.snapshot(), T);
+    const Vec3d before = offset_of_tree(mesh), after = data.V.empty() ? before : data.offset;
+    const Eigen::Affine3d T_local = Eigen::Translation3d(-after) * T * Eigen::Translation3d(before);
     for (Mesh& child : data.children) {
         child = child.clone();
-        child.set_T_parent_mesh(T * child.T_parent_mesh());
+        child.set_T_parent_mesh(T_local * child.T_parent_mesh() * Eigen::Translation3d(after - before));
     }
     return Mesh(std::move(data));
 }
@@ -42,8 +56,8 @@ Box3d bounding_box(const Mesh& mesh, const Eigen::Affine3d& T_world_mesh) {
     placed.set_T_parent_mesh(T_world_mesh);
     const MeshData flat = flatten(placed);
     geometry::require_vertices("bounding box", flat);
-    return {flat.V.colwise().minCoeff().transpose().cast<double>(),
-            flat.V.colwise().maxCoeff().transpose().cast<double>()};
+    return {flat.V.colwise().minCoeff().transpose().cast<double>() + flat.offset,
+            flat.V.colwise().maxCoeff().transpose().cast<double>() + flat.offset};
 }
 
 Box3d bounding_box(const Mesh& mesh) {

@@ -69,6 +69,12 @@ std::vector<Vec3> given_normals(const Array3f& N, const Neighborhoods& neighborh
     return normals;
 }
 
+/// The viewpoint is given in the mesh's own frame, offset included; points are relative to the offset.
+NeighborhoodOptions relative_to(const Vec3d& offset, NeighborhoodOptions options) {
+    if (options.viewpoint) *options.viewpoint -= offset;
+    return options;
+}
+
 Neighborhoods neighborhoods_of(const char* what, const MeshData& mesh, const NeighborhoodOptions& options) {
     geometry::require_vertices(what, mesh);
     if (options.viewpoint && !options.viewpoint->allFinite())
@@ -110,7 +116,8 @@ Mesh estimate_normals(const Mesh& mesh, const NeighborhoodOptions& options) {
     const auto data = mesh.snapshot();
     const Neighborhoods neighborhoods = neighborhoods_of("estimate_normals", *data, options);
     Mesh result = mesh.clone();
-    result.set_N(spread(plane_normals(neighborhoods, options), neighborhoods.place));
+    const NeighborhoodOptions local = relative_to(data->offset, options);
+    result.set_N(spread(plane_normals(neighborhoods, local), neighborhoods.place));
     return result;
 }
 
@@ -119,7 +126,8 @@ Mesh estimate_surfels(const Mesh& mesh, const NeighborhoodOptions& options, bool
     const Neighborhoods neighborhoods = neighborhoods_of("estimate_surfels", *data, options);
     const bool has_normals = keep_normals && !data->N.empty();
     const std::vector<Vec3> normals =
-        has_normals ? given_normals(data->N, neighborhoods) : plane_normals(neighborhoods, options);
+        has_normals ? given_normals(data->N, neighborhoods)
+                    : plane_normals(neighborhoods, relative_to(data->offset, options));
     std::vector<geometry::SurfelAxes> axes(neighborhoods.count());
     parallel_chunks(axes.size(), surfel_grain, [&](size_t begin, size_t end) {
         std::vector<Vec3d> steps;

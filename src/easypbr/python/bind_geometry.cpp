@@ -74,8 +74,8 @@ void bind_placing(MeshClass& mesh) {
                 return released([&] { return transformed(m, affine); });
             },
             nb::arg("T"),
-            "A new mesh with vertices transformed by T (4 x 4), and normals, winding order, tangents and "
-            "children with them. T_parent_mesh is kept.")
+            "A new mesh with vertices, offset included, transformed by T (4 x 4), and normals, winding order, "
+            "tangents and children with them. T_parent_mesh is kept.")
         .def(
             "center", [](const Mesh& m) { return released([&] { return centered(m); }); },
             "A new mesh with the centre of its bounding box at its origin.")
@@ -92,12 +92,12 @@ void bind_placing(MeshClass& mesh) {
              nb::sig("def bounding_box(self, T_world_mesh: numpy.typing.ArrayLike | None = None) -> "
                      "numpy.ndarray"),
              "2 x 3: lowest and highest corner of all vertices, children included, after T_world_mesh "
-             "(default: "
-             "T_parent_mesh).")
+             "(default: T_parent_mesh). The offset of the mesh is included: less scene.origin the box is in "
+             "the scene's frame.")
         .def("oriented_bounding_box", oriented_box,
              nb::sig("def oriented_bounding_box(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
-             "A small oriented bounding box: its 4 x 4 pose (centre and axes) and its sizes along the axes, "
-             "in descending order.");
+             "A small oriented bounding box: its 4 x 4 pose (centre and axes; the offset of the mesh included) "
+             "and its sizes along the axes, in descending order.");
 }
 
 void bind_repair(MeshClass& mesh) {

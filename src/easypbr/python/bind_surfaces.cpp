@@ -12,13 +12,14 @@ namespace {
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 nb::tuple closest_points(const Mesh& mesh, const ArrayLike& queries) {
-    const Array3f points = to_array<float, 3>(queries, {"queries", 3, 3});
+    const Vec3d offset = mesh.offset();
+    const Array3f points = to_local(queries, {"queries", 3, 3}, offset);
     Points found;
     SurfaceTree::Nearest nearest = released([&] {
         SurfaceTree::Nearest result = SurfaceTree(*mesh.snapshot()).nearest(points);
         found.resize(Eigen::Index(result.point.size()), 3);
         for (size_t i = 0; i < result.point.size(); ++i)
-            found.row(Eigen::Index(i)) = result.point[i].transpose();
+            found.row(Eigen::Index(i)) = (result.point[i] + offset).transpose();
         return result;
     });
     return nb::make_tuple(owning_array(std::move(nearest.distance)), owning_array(std::move(nearest.face)),
@@ -64,7 +65,8 @@ void bind_surfaces(nb::module_&) {
              nb::sig("def closest_points(self, queries: numpy.typing.ArrayLike) -> tuple[numpy.ndarray, "
                      "numpy.ndarray, numpy.ndarray]"),
              "For each query the distance to the surface, the nearest face, and the nearest point on it; the "
-             "nearest vertex for a mesh without faces.")
+             "nearest vertex for a mesh without faces. Queries and points are in the mesh's own frame, its offset "
+             "included.")
         .def("distance_to", distance_to, nb::arg("other"), nb::arg("samples") = 100000, nb::arg("seed") = 0,
              "One-sided distances of this surface to the other: a dict of max (of vertices and samples), "
              "mean and rms (of the samples). Poses and children are included.")

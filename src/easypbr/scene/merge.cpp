@@ -142,13 +142,6 @@ std::shared_ptr<const LabelMap> first_label_map(Meshes meshes) {
     return found;
 }
 
-/// The mesh's positions relative to another offset than its own.
-Array3f positions_from(const MeshData& mesh, const Vec3d& offset) {
-    if (mesh.V.empty() || mesh.offset == offset) return mesh.V;
-    const Eigen::RowVector3d shift = (mesh.offset - offset).transpose();
-    return Array3f::Dense((mesh.V.cast<double>().rowwise() + shift).cast<float>());
-}
-
 /// Each mesh's normals; computed where a mesh has faces only.
 Array3f joined_normals(Meshes meshes) {
     const auto has_normals = [](const MeshData& mesh) { return !mesh.N.empty(); };
@@ -192,6 +185,12 @@ bool all_have(Meshes meshes, Of&& of) {
 }
 
 }  // namespace
+
+Array3f positions_from(const MeshData& mesh, const Vec3d& offset) {
+    if (mesh.V.empty() || mesh.offset == offset) return mesh.V;
+    const Eigen::RowVector3d shift = (mesh.offset - offset).transpose();
+    return Array3f::Dense((mesh.V.cast<double>().rowwise() + shift).cast<float>());
+}
 
 MeshData merged(Meshes meshes) {
     if (meshes.empty()) return {};

@@ -14,6 +14,9 @@ namespace easypbr {
 /// turn.
 MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T);
 
+/// The mesh's positions relative to another offset than its own.
+Array3f positions_from(const MeshData& mesh, const Vec3d& offset);
+
 /// All vertices, faces and edges in the order of the meshes, which count in one common frame: poses and
 /// children are not looked at, offsets are. Name, file, style, pose and offset are those of the first.
 /// Materials and parts are kept, one part for each mesh that has none. What only some of the meshes have is
