@@ -231,3 +231,47 @@ def test_layers_of_the_same_name_hold_the_same(size):
         np.testing.assert_allclose(drawn[name][..., :3] if name == "albedo" else drawn[name], exact[name], atol=0.003)
     np.testing.assert_array_equal(drawn["element_id"][seen] - 1, exact["face_id"][seen])
     np.testing.assert_array_equal(drawn["object_id"], exact["instance_id"])
+
+
+def seen_through(distortion, *meshes):
+    scene = Scene()
+    for i, mesh in enumerate(meshes):
+        scene.show(mesh, f"mesh{i}")
+    K = np.array([[300, 0, 159.5], [0, 300, 119.5], [0, 0, 1.0]])
+    view = Viewer((320, 240), {"ground.mode": "none"}, scene=scene)
+    view.camera = Camera.from_opencv(K, np.eye(4), (320, 240), distortion=distortion)
+    return view
+
+
+def test_a_lens_that_does_nothing_changes_no_layer():
+    names = ["instance_id", "depth", "face_id"]
+    plain, through = (seen_through(d, moved(shapes.sphere(0.5, 64), 0, 0, 2)).render_layers(names)
+                      for d in (None, [1e-9, 0, 0, 0]))
+    for name in ("instance_id", "face_id"):
+        np.testing.assert_array_equal(plain[name], through[name])
+    np.testing.assert_allclose(plain["depth"], through["depth"], rtol=1e-6)
+
+
+def test_depth_is_exact_through_a_lens():
+    floor = shapes.plane(20)
+    # Level, 0.3 below the camera, whose y points down.
+    floor.T_parent_mesh = [[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 0], [0, 0, 0, 1]]
+    layers = seen_through([-0.1, 0.01, 0, 0], floor).render_layers(["depth", "position"])
+    below = layers["depth"] > 0
+    assert below.sum() > 30000
+    # float32 of places up to 10 away.
+    np.testing.assert_allclose(layers["position"][below][:, 1], 0.3, atol=2e-6)
+
+
+def test_what_comes_near_is_not_clipped():
+    box = moved(shapes.box(0.1), 0, 0, 3)
+    view = seen_through(None, box)
+    assert view.annotations()[0].pixels_visible > 0
+    first = view.settings.camera.near
+    moved(box, 0, 0, 0.2)
+    (near,) = view.annotations()
+    # A face of 0.1 at 0.15: 0.1 / 0.15 * 300 = 200 pixels wide and high.
+    assert near.pixels_visible == pytest.approx(200 * 200, rel=0.02)
+    moved(box, 0, 0, 3)
+    view.annotations()
+    assert view.settings.camera.near == first

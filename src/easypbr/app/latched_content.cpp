@@ -1,6 +1,7 @@
 #include "easypbr/app/latched_content.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "easypbr/scene/auto_parameters.h"
 
@@ -39,18 +40,38 @@ bool LatchedContent::release_outgrown(const SceneSnapshot& scene, Settings& sett
     return true;
 }
 
-void LatchedContent::lower_ground(const SceneSnapshot& scene, const Settings& settings,
-                                  ResolvedSettings& resolved) {
-    const auto& given = settings.ground.height;
-    auto& ground = resolved.settings.ground;
-    if (ground.mode == GroundMode::none || given.is_pinned() || !given.value()) return;
+void LatchedContent::follow(const SceneSnapshot& scene, const Settings& settings,
+                            ResolvedSettings& resolved) {
     if (std::vector<Placed> now = placed(scene); now != placed_) {
         placed_ = std::move(now);
         placed_bounds_ = scene.bounds();
     }
-    if (!placed_bounds_.isEmpty())
-        ground.height = std::min(ground.height,
-                                 detail::ground_below(placed_bounds_, parse_up(resolved.settings.camera.up)));
+    lower_ground(settings, resolved);
+    bring_near_plane(settings, resolved);
+}
+
+void LatchedContent::lower_ground(const Settings& settings, ResolvedSettings& resolved) const {
+    const auto& given = settings.ground.height;
+    auto& ground = resolved.settings.ground;
+    if (ground.mode == GroundMode::none || given.is_pinned() || !given.value() || placed_bounds_.isEmpty())
+        return;
+    ground.height = std::min(ground.height,
+                             detail::ground_below(placed_bounds_, parse_up(resolved.settings.camera.up)));
+}
+
+void LatchedContent::bring_near_plane(const Settings& settings, ResolvedSettings& resolved) {
+    const auto& given = settings.camera.near;
+    if (!given.value()) near_placed_ = placed_;
+    if (given.is_pinned() || placed_ == near_placed_ || placed_bounds_.isEmpty()) return;
+    Camera& camera = resolved.camera;
+    const Vec3d forward = -camera.T_world_cam.linear().col(2);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 8; ++i)
+        nearest = std::min(nearest, forward.dot(placed_bounds_.corner(Box3d::CornerType(i)) - camera.position()));
+    const double distance = (resolved.settings.camera.target - resolved.settings.camera.position).norm();
+    camera.near = std::min(camera.near, detail::near_plane(nearest, distance));
+    camera.far = std::max(camera.far, 2 * camera.near);
+    resolved.settings.camera.near = camera.near;
 }
 
 void LatchedContent::keep(const SceneSnapshot& scene) {

@@ -19,8 +19,9 @@ class LatchedContent {
     /// Releases all latched settings, and returns true, where an object of a new name makes the content
     /// larger.
     bool release_outgrown(const SceneSnapshot& scene, Settings& settings);
-    /// Lowers the ground of one image where the content has sunk below the latched height.
-    void lower_ground(const SceneSnapshot& scene, const Settings& settings, ResolvedSettings& resolved);
+    /// What one image has in place of latched values where the content has moved: a lower ground below what
+    /// has sunk, a nearer near plane before what has come near.
+    void follow(const SceneSnapshot& scene, const Settings& settings, ResolvedSettings& resolved);
     /// The settings were latched for this content.
     void keep(const SceneSnapshot& scene);
 
@@ -31,12 +32,15 @@ class LatchedContent {
         bool operator==(const Placed&) const = default;
     };
     static std::vector<Placed> placed(const SceneSnapshot& scene);
+    void lower_ground(const Settings& settings, ResolvedSettings& resolved) const;
+    void bring_near_plane(const Settings& settings, ResolvedSettings& resolved);
     bool has_new_names(const SceneSnapshot& scene) const;
 
     std::set<std::string> names_;
     Box3d bounds_;                ///< of the content of these names, when it was kept
-    std::vector<Placed> placed_;  ///< content of the next
-    Box3d placed_bounds_;
+    std::vector<Placed> placed_;       ///< content of the image before
+    Box3d placed_bounds_;              ///< likewise
+    std::vector<Placed> near_placed_;  ///< content that the near plane was inferred for
 };
 
 }  // namespace easypbr::app

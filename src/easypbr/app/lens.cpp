@@ -24,21 +24,23 @@ std::vector<Vec2d> undistorted_slopes(const Camera& camera, Vec2i size) {
     return slopes;
 }
 
-/// A pinhole camera with the same focal lengths whose picture holds all these rays, and one pixel more.
+/// A pinhole camera with the same focal lengths whose picture holds all these rays, and one pixel more. Its
+/// principal point lies within a pixel as the lens's does: where the lens does little, pixels meet pixels.
 void choose_drawn(const Camera& camera, const std::vector<Vec2d>& slopes, LensMap& map) {
     const Mat3d K = camera.opencv_K(map.size.x(), map.size.y());
     Eigen::AlignedBox2d box;
     for (const Vec2d& s : slopes) box.extend(s);
     const Vec2d focal(K(0, 0), K(1, 1));
-    const Vec2d low = (box.min().cwiseProduct(focal)).array().floor() - 1,
-                high = (box.max().cwiseProduct(focal)).array().ceil() + 1;
+    const Vec2d within(K(0, 2) - std::floor(K(0, 2)), K(1, 2) - std::floor(K(1, 2)));
+    const Vec2d low = (box.min().cwiseProduct(focal) + within).array().floor() - 1 - within.array(),
+                high = (box.max().cwiseProduct(focal) + within).array().ceil() + 1 - within.array();
     if ((high - low).maxCoeff() > max_image_side - 1)
         throw ArgumentError(fmt::format(
             "camera distortion: the picture without it would have {:.0f} x {:.0f} pixels, more than {}",
             high.x() - low.x(), high.y() - low.y(), max_image_side));
     map.drawn = camera;
     map.drawn.distortion.reset();
-    map.drawn_size = (high - low).cast<int>() + Vec2i(1, 1);
+    map.drawn_size = (high - low).array().round().cast<int>() + 1;
     map.drawn.intrinsics =
         Intrinsics{focal.x(), focal.y(), -low.x(), -low.y(), map.drawn_size.x(), map.drawn_size.y()};
 }
@@ -50,6 +52,12 @@ size_t LensMap::nearest(size_t pixel) const {
     const int x = std::clamp(int(std::lround(source[pixel].x())), 0, drawn_size.x() - 1);
     const int y = std::clamp(int(std::lround(source[pixel].y())), 0, drawn_size.y() - 1);
     return size_t(y) * size_t(drawn_size.x()) + size_t(x);
+}
+
+Vec2d LensMap::drawn_slope(size_t drawn) const {
+    const Intrinsics& k = *this->drawn.intrinsics;
+    const auto width = size_t(drawn_size.x());
+    return {(double(drawn % width) - k.cx) / k.fx, (double(drawn / width) - k.cy) / k.fy};
 }
 
 LensMap lens_map(const Camera& camera, Vec2i size) {

@@ -21,6 +21,8 @@ struct LensMap {
     bool is_identity() const { return source.empty(); }
     /// Place of the nearest drawn pixel, row by row.
     size_t nearest(size_t pixel) const;
+    /// x/z and y/z of the ray through the middle of a drawn pixel. Not of an identity.
+    Vec2d drawn_slope(size_t drawn) const;
 };
 
 /// The map of a camera for a picture of this size. Throws ArgumentError where the lens has no inverse

@@ -107,7 +107,7 @@ ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
     check_size(size_or(size));
     const SceneSnapshot scene = snapshot();
     ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size_or(size), {}, insets_);
-    latched_content_.lower_ground(scene, *settings_, resolved);
+    latched_content_.follow(scene, *settings_, resolved);
     return resolved;
 }
 
@@ -126,7 +126,7 @@ Prepared Session::prepare(const PictureOptions& options) {
     const Stopwatch watch(timing_.draw);
     prepared.resolved = easypbr::resolve(prepared.scene, *settings_, prepared.options.size,
                                          prepared.options.samples, insets_);
-    latched_content_.lower_ground(prepared.scene, *settings_, prepared.resolved);
+    latched_content_.follow(prepared.scene, *settings_, prepared.resolved);
     warnings_.check(prepared.scene, *settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
         prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());

@@ -1,14 +1,16 @@
 #include "easypbr/dataset/surfaces.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::dataset {
 namespace {
 
-/// How far the ray's hit may lie from the drawn depth, as a part of it: beyond, the face is seen edge-on or
-/// the pixel only touches it.
+/// How far the hit of the drawn pixel's ray may lie from the drawn depth, as a part of it: beyond, the face is
+/// seen edge-on or the pixel only touches it.
 constexpr double relative_depth_tolerance = 0.01;
 
 struct Ray {
@@ -42,16 +44,39 @@ Vec3 inside(const Vec3d& weights) {
     return sum > 0 ? Vec3((positive / sum).cast<float>()) : Vec3(Vec3::Constant(1.0f / 3));
 }
 
-void meet_face(Surfaces& s, size_t pixel, const Eigen::Affine3d& T_cv_mesh, double drawn_depth) {
+/// What was drawn at a pixel: through a lens the nearest drawn pixel's ray is another one.
+struct DrawnPixel {
+    double depth;
+    std::optional<Ray> ray;
+};
+
+DrawnPixel drawn_pixel(const app::LensMap& lens, size_t drawn, double depth) {
+    if (lens.is_identity()) return {depth, std::nullopt};
+    const Vec2d slope = lens.drawn_slope(drawn);
+    return {depth, Ray{Vec3d::Zero(), {slope.x(), slope.y(), 1}}};
+}
+
+void meet_face(Surfaces& s, size_t pixel, const Eigen::Affine3d& T_cv_mesh, const DrawnPixel& drawn) {
     const MeshData& mesh = s.mesh_of(pixel);
     const int32_t* f = mesh.F.data() + 3 * s.element_of(pixel);
     Vec3d corner[3];
     for (int k = 0; k < 3; ++k) corner[k] = T_cv_mesh * Vec3(mesh.V.row(f[k])).cast<double>();
     const Ray ray = ray_of(s, pixel);
     const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    const double slant = normal.dot(ray.direction);
-    double depth = slant != 0 ? normal.dot(corner[0] - ray.origin) / slant : drawn_depth;
-    if (!(std::abs(depth - drawn_depth) <= relative_depth_tolerance * drawn_depth)) depth = drawn_depth;
+    const auto depth_along = [&](const Ray& r) {
+        const double slant = normal.dot(r.direction);
+        return slant != 0 ? normal.dot(corner[0] - r.origin) / slant : drawn.depth;
+    };
+    const double tolerance = relative_depth_tolerance * drawn.depth;
+    double depth = depth_along(drawn.ray.value_or(ray));
+    if (!(std::abs(depth - drawn.depth) <= tolerance)) {
+        depth = drawn.depth;
+    } else if (drawn.ray) {
+        // Beside a face that is seen edge-on its plane is somewhere else.
+        const auto [nearest, farthest] = std::minmax({corner[0].z(), corner[1].z(), corner[2].z()});
+        depth = depth_along(ray);
+        if (!(depth >= nearest - tolerance && depth <= farthest + tolerance)) depth = drawn.depth;
+    }
     const Vec3d point = ray.origin + depth * ray.direction;
     const double area = normal.squaredNorm();
     Vec3d weights = Vec3d::Constant(1.0 / 3);
@@ -112,7 +137,8 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
         s.is_face[i] = frame.is_face[drawn];
         if (!s.covered(i)) return;
         const double depth = frame.depth[drawn];
-        if (s.on_face(i)) return meet_face(s, i, T_cv_mesh[s.object[i] - 1], depth);
+        if (s.on_face(i))
+            return meet_face(s, i, T_cv_mesh[s.object[i] - 1], drawn_pixel(lens, drawn, depth));
         const Ray ray = ray_of(s, i);
         s.position[i] = Vec3d(ray.origin + depth * ray.direction).cast<float>();
     });

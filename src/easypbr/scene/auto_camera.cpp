@@ -75,7 +75,7 @@ void set_depth_range(const Content& content, CameraSettings& settings, Camera& c
         nearest = least - forward.dot(camera.position());
         farthest = most - forward.dot(camera.position());
     }
-    fill(settings.near, std::max(0.1 * nearest, 1e-3 * distance));
+    fill(settings.near, detail::near_plane(nearest, distance));
     camera.near = *settings.near;
     camera.far = std::max(farthest + distance, 2 * camera.near);
 }

@@ -86,6 +86,12 @@ double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_ca
 
 Camera resolve_camera(const Content& content, CameraSettings& settings, const PictureShape& picture);
 
+/// Distance of a near plane before content that begins at a depth, which may be behind the camera, with a
+/// target at `distance`.
+constexpr double near_plane(double nearest, double distance) {
+    return std::max(0.1 * nearest, 1e-3 * distance);
+}
+
 /// Height of a ground just below the content, so that a floor of its own hides it. Infinite where there is no
 /// content.
 double ground_below(const Box3d& content, const Vec3d& up);
