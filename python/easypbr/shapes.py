@@ -61,7 +61,7 @@ def camera_path(
 
 
 def image_plane(image: ArrayLike, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
-    """An image in the xy plane around the origin, facing +z, unlit.
+    """An image in the xy plane around the origin, facing +z, unlit: shown as it is, past exposure and tone curve.
 
     `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by
     default the plane is 1 high.
@@ -79,6 +79,7 @@ def image_plane(image: ArrayLike, width: float | None = None, height: float | No
     mesh.name = "image"
     mesh.material.base_color = (1, 1, 1)
     mesh.material.unlit = True
+    mesh.style.lit = False
     mesh.material.double_sided = True
     mesh.material.base_color_texture = image
     return mesh

@@ -79,3 +79,49 @@ def test_colours_by_all_names_of_css():
         srgb = np.array([int(code[i : i + 2], 16) for i in (1, 3, 5)]) / 255
         linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
         assert np.allclose(easypbr.Material(base_color=name).base_color, linear, rtol=0, atol=1e-6), name
+
+
+def shown(mesh, **style):
+    """The colour in the middle of a picture that a square fills."""
+    for name, value in style.items():
+        setattr(mesh.style, name, value)
+    scene = easypbr.Scene()
+    scene.show(mesh, "square")
+    view = Viewer((16, 16), scene=scene)
+    camera = easypbr.Camera.look_at((0, 0, 2), (0, 0, 0))
+    camera.projection, camera.ortho_height = "orthographic", 1
+    view.camera = camera
+    return view.render(samples=1)[8, 8, :3], view.layers(["albedo"])["albedo"][8, 8, :3]
+
+
+def square(**attributes):
+    mesh = Mesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    for name, value in attributes.items():
+        setattr(mesh, name, value)
+    return mesh
+
+
+def test_vertex_colours_are_those_of_the_surface():
+    color = np.array([10, 200, 77], np.uint8)
+    linear = np.where(color / 255 <= 0.04045, color / 255 / 12.92, ((color / 255 + 0.055) / 1.055) ** 2.4)
+    colors = np.tile(color, (4, 1))
+    # The albedo is stored in 16 bits.
+    np.testing.assert_allclose(shown(square(C=colors))[1], linear, atol=2e-4)
+    halved = square(C=colors)
+    halved.material.base_color = (0.5, 0.5, 0.5)
+    np.testing.assert_allclose(shown(halved)[1], linear / 2, atol=2e-4)
+
+
+def test_unlit_materials_are_shown_exactly_where_nothing_is_lit():
+    mesh = square()
+    mesh.material = Material(unlit=True, base_color=(0.2158605,) * 3)
+    assert (shown(mesh, lit=False)[0] == 128).all()
+
+
+def test_files_whose_materials_are_all_unlit_are_shown_exactly(tmp_path):
+    mesh = square()
+    mesh.material = Material(unlit=True, base_color=(0.2158605,) * 3)
+    mesh.save(tmp_path / "square.glb")
+    read = Mesh(tmp_path / "square.glb")
+    assert read.children[0].style.lit is False
+    assert (shown(read)[0] == 128).all()

@@ -226,13 +226,13 @@ def test_viewers_record_on_several_threads(tmp_path):
 
 
 def test_image_plane_shows_its_pixels(size):
-    """A picture in front of an orthographic camera that it fills is that picture: unlit, not tone mapped away."""
+    """A picture in front of an orthographic camera that it fills is that picture, past exposure and tone curve."""
     rng = np.random.default_rng(1)
     image = rng.integers(0, 256, (6, 8, 3), dtype=np.uint8).repeat(8, 0).repeat(8, 1)
     scene = Scene()
     plane = scene.show(shapes.image_plane(image), "image")
     assert np.ptp(plane.V, axis=0) == pytest.approx([64 / 48, 1, 0])
-    view = Viewer(size, {"tonemap.operator": "none", "tonemap.exposure": 1.0}, scene=scene)
+    view = Viewer(size, scene=scene)
     camera = Camera.look_at((0, 0, 2), (0, 0, 0))
     camera.projection, camera.ortho_height = "orthographic", 1
     view.camera = camera

@@ -43,7 +43,7 @@ struct SurfaceShader {
 /// description each.
 struct Material {
     std::string name;
-    Vec3 base_color{0.6f, 0.6f, 0.6f};
+    Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default counts as white where vertices have colours
     float opacity = 1;             ///< 0 transparent to 1 opaque
     float metallic = 0;            ///< 0 dielectric to 1 metal
     float roughness = 0.5f;        ///< perceptual, 0 to 1; alpha = roughness^2
@@ -55,7 +55,7 @@ struct Material {
     Auto<AlphaMode> alpha_mode;
     float alpha_cutoff = 0.5f;  ///< alpha mode mask: fragments below are discarded
     bool double_sided = true;   ///< no back-face culling
-    bool unlit = false;         ///< the base colour is shown without lighting (KHR_materials_unlit)
+    bool unlit = false;         ///< the base colour is the radiance (KHR_materials_unlit); see DrawStyle::lit
 
     // KHR_materials_clearcoat: a dielectric layer (index of refraction 1.5) over the base.
     float clearcoat = 0;               ///< strength, 0 to 1

@@ -67,6 +67,7 @@ Mesh picture(const Corners& corners, const Image& image) {
     material.base_color_texture.image = std::make_shared<const Image>(image);
     material.base_color_texture.wrap_u = material.base_color_texture.wrap_v = Wrap::clamp;
     data.materials = {material};
+    data.style.lit = false;  // the image's own colours, past exposure and tone curve
     return Mesh(std::move(data));
 }
 

@@ -146,10 +146,7 @@ uint64_t limit_of(const LoadOptions& options) {
     return uint64_t(std::min(options.memory_gb, 1e9) * 1e9);
 }
 
-}  // namespace
-
-LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
-    const MemoryScope memory(path.string(), limit_of(options));
+LoadedScene read_scene(const fs::path& path, const LoadOptions& options) {
     const std::string format = options.format.empty() ? extension_of(path) : options.format;
     if (is_gltf(format)) return load_gltf(path, options.variant);
     if (readers().contains(format)) return decode(FileBytes(path), path, format, options);
@@ -157,12 +154,34 @@ LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
     fail_extension(path, format, "read", readable_extensions());
 }
 
+/// Colours that a file says no light falls on, such as those of photogrammetry, are shown as they are.
+void show_unlit_exactly(Mesh& mesh) {
+    const auto data = mesh.snapshot();
+    if (!data->materials.empty() && std::ranges::all_of(data->materials, &Material::unlit)) {
+        Style style = mesh.style();
+        style.lit = false;
+        mesh.set_style(style);
+    }
+    for (Mesh child : mesh.children()) show_unlit_exactly(child);
+}
+
+}  // namespace
+
+LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
+    const MemoryScope memory(path.string(), limit_of(options));
+    LoadedScene scene = read_scene(path, options);
+    show_unlit_exactly(scene.mesh);
+    return scene;
+}
+
 LoadedScene load_scene(const FileBytes& bytes, const fs::path& name, const LoadOptions& options) {
     const MemoryScope memory(name.string(), limit_of(options));
     if (bytes.size() == 0) throw FormatError(fmt::format("{}: there is nothing to read", name.string()));
     const std::string format = options.format.empty() ? format_of_content(bytes.text()) : options.format;
     if (!is_gltf(format) && !readers().contains(format)) fail_format(name, format);
-    return decode(bytes, name, format, options);
+    LoadedScene scene = decode(bytes, name, format, options);
+    show_unlit_exactly(scene.mesh);
+    return scene;
 }
 
 Mesh load_mesh(const fs::path& path, const LoadOptions& options) {

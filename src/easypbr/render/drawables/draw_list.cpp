@@ -38,7 +38,10 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     const bool own_color = !source.settings.material.color.value();
     item.with_colors =
         !mesh.C.empty() && (source.colors.from_data || (own_color && source.colors.vertex_colors));
-    if (source.colors.from_data) item.material.base_color = Vec3(1, 1, 1);
+    // The default of a material is no colour beside those of the vertices.
+    const bool has_default_color = item.material.base_color == Material().base_color;
+    if (source.colors.from_data || (item.with_colors && has_default_color))
+        item.material.base_color = Vec3::Ones();
     if (!source.colors.textured || (source.colors.from_data && item.with_colors))
         item.material.base_color_texture = {};
     item.alpha = item.material.alpha_mode_for(item.with_colors && source.transparent_colors);
@@ -51,11 +54,17 @@ SurfaceKind kind_of(const Source& source) {
     return source.colors.exact ? SurfaceKind::exact : SurfaceKind::display;
 }
 
+/// What is shown as it is has no radiance, of unlit materials neither.
+void set_kind(const Source& source, DrawItem& item) {
+    item.kind = kind_of(source);
+    if (item.kind != SurfaceKind::lit && !item.material.shader) item.material.unlit = false;
+}
+
 void add_mesh(const Source& source, DrawList& list) {
     if (source.object.mesh->F.empty()) return;
     for (const MeshPart& part : parts_of(*source.object.mesh)) {
         DrawItem item = make_item(source, part);
-        item.kind = kind_of(source);
+        set_kind(source, item);
         if (source.style.mode == DrawMode::voxels) item.style.flat = true;
         list.items[DrawMode::mesh].push_back(std::move(item));
     }
@@ -66,7 +75,7 @@ void add_vertices(const Source& source, DrawMode kind, DrawList& list) {
     const MeshData& mesh = *source.object.mesh;
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
-    item.kind = kind_of(source);
+    set_kind(source, item);
     item.reaches_beyond = true;
     if (kind == DrawMode::points) {
         // Labels of clouds are there to be read.
