@@ -26,6 +26,8 @@ writers = ["coco", "yolo", "kitti", "bop", "webdataset", "raw", "png"]
 [image]
 size = [96, 72]
 samples = 1
+[camera]
+elevation_deg = 0
 [background]
 skies = 1
 [[objects]]

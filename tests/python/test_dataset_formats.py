@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 import trimesh
-from test_dataset import records, small
+from test_dataset import level, records, small
 from test_ground_truth import brown, fisheye
 
 import easypbr
@@ -77,8 +77,28 @@ def test_lenses_are_in_the_formats_that_have_them(tmp_path, model):
 ])
 def test_formats_refuse_what_they_cannot_say(tmp_path, writer, camera, message):
     with pytest.raises(ArgumentError, match=message):
-        generate(small(writers=(writer,), camera=CameraSpec(**camera)), tmp_path / "out")
+        generate(level(writers=(writer,), camera=CameraSpec(elevation_deg=0.0, **camera)), tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("changes, message", [
+    ({"camera": CameraSpec()}, r"camera.elevation_deg = 0 instead of \[-25, 35\]$"),
+    ({"camera": CameraSpec(elevation_deg=10.0)}, "camera.elevation_deg = 0 instead of 10$"),
+    ({"objects": [ObjectSpec(), ObjectSpec(tilt_deg=20.0)]}, r"expected objects\[1\].tilt_deg = 0 instead of 20$"),
+    ({"objects": [ObjectSpec(rotation="any")]}, r'expected objects\[0\].rotation = "upright" instead of "any"$'),
+    ({"camera": CameraSpec(elevation_deg=(0.0, 5.0)), "objects": [ObjectSpec(rotation="any", tilt_deg=-5.0)]},
+     r"elevation_deg = 0 instead of \[0, 5\], objects\[0\].rotation = .*, objects\[0\].tilt_deg = 0 instead of -5$"),
+])
+def test_kitti_refuses_boxes_that_are_tilted_before_the_camera(tmp_path, changes, message):
+    with pytest.raises(ArgumentError, match="kitti: its boxes turn only about the camera's y axis.*" + message):
+        generate(level(**changes), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_kitti_takes_all_that_does_not_tilt_annotated_objects():
+    """Of "none", tilt_deg tilts nothing; distractors have no labels; motion is that of the next frame."""
+    objects = [ObjectSpec(rotation="none", tilt_deg=20.0), ObjectSpec("builtin:shapes", rotation="any", distractor=True)]
+    level(objects=objects, camera=CameraSpec(elevation_deg=(0.0, 0.0)), motion=MotionSpec(0.1, 10.0, 0.1)).check()
 
 
 def test_bop_poses_are_of_models_in_millimetres(tmp_path):

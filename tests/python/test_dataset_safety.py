@@ -14,7 +14,7 @@ import yaml
 from easypbr import ArgumentError
 from easypbr.dataset import ObjectSpec, generate
 from easypbr.dataset.folder import locked
-from test_dataset import small
+from test_dataset import level, small
 
 #: What Python and the package import, and a stranger could leave beside a spec.
 MODULES = ("numpy", "json", "pickle", "random", "struct", "multiprocessing", "easypbr", "tomllib", "argparse")
@@ -119,7 +119,7 @@ def test_class_names_that_break_label_files_are_refused(tmp_path, name):
 
 @pytest.mark.parametrize("name", ["drone", "1.5", "yes", "a: b", "- x", "#hash", '"quoted"', "back\\slash", "große Möwe", "null", "*x"])
 def test_class_names_are_texts_in_every_format(tmp_path, name):
-    generate(small(count=1, objects=[ObjectSpec(class_name=name)], writers=("yolo", "coco", "kitti")), tmp_path, workers=1)
+    generate(level(count=1, objects=[ObjectSpec(class_name=name)], writers=("yolo", "coco", "kitti")), tmp_path, workers=1)
     assert yaml.safe_load((tmp_path / "data.yaml").read_text())["names"] == {0: name}
     assert json.loads((tmp_path / "annotations.json").read_text())["categories"][0]["name"] == name
     for line in (tmp_path / "kitti/label_2/000000.txt").read_text().splitlines():

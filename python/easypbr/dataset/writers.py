@@ -3,6 +3,7 @@
 import io
 import json
 import tarfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -13,7 +14,7 @@ from .. import _easypbr
 from ..errors import ArgumentError
 from .frame import Frame
 from .models import model_ply, single_model
-from .tables import DatasetTables
+from .tables import DatasetTables, Range
 
 
 def _json(value: object) -> bytes:
@@ -128,13 +129,36 @@ class Yolo(Writer):
         return {"data.yaml": f"path: .\ntrain: images\nval: images\nnames:\n{names}".encode()}
 
 
+def _what_tilts(spec: DatasetTables) -> Iterator[str]:
+    """What must be set otherwise for the y axes of the camera and of all annotated objects to be parallel."""
+    elevation = spec.camera.elevation_deg
+    if any(np.atleast_1d(elevation) != 0):
+        yield f"camera.elevation_deg = 0 instead of {_number(elevation)}"
+    for i, entry in enumerate(spec.objects):
+        if entry.distractor:
+            continue
+        if entry.rotation == "any":
+            yield f"objects[{i}].rotation = \"upright\" instead of \"any\""
+        if entry.rotation != "none" and entry.tilt_deg != 0:
+            yield f"objects[{i}].tilt_deg = 0 instead of {_number(entry.tilt_deg)}"
+
+
+def _number(value: Range) -> str:
+    return f"[{value[0]:g}, {value[1]:g}]" if isinstance(value, tuple) else f"{value:g}"
+
+
 class Kitti(Writer):
-    """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m)."""
+    """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m). Boxes turn about the camera's y axis
+    alone: cameras are level, annotated objects upright."""
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
         if spec.camera.distortion:
             _refuse("kitti", "its pictures are rectified: expected no camera.distortion")
+        wanted = list(_what_tilts(spec))
+        if wanted:
+            _refuse("kitti", "its boxes turn only about the camera's y axis, so the camera must be level and annotated objects upright: "
+                             f"expected {', '.join(wanted)}")
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}"
