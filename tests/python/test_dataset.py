@@ -295,6 +295,47 @@ def test_files_that_are_no_specs_or_folders_are_named(tmp_path):
         generate(small(), tmp_path / "spec.toml", workers=1)
 
 
+def write_gltf(path, buffer: str, data: bytes) -> None:
+    """A triangle whose three vertices are the first 36 bytes of its buffer."""
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"uri": buffer, "byteLength": len(data)}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    }))
+
+
+def test_side_files_of_meshes_are_no_objects(tmp_path):
+    """Buffers of a multiple of 16 bytes could be read as scans of KITTI; scans are still found."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [9, 9, 9]], "<f4").tobytes()  # 48 bytes
+    folder = tmp_path / "models"
+    (folder / "data").mkdir(parents=True)
+    write_gltf(folder / "a.gltf", "data/far%20away.bin", corners)
+    write_gltf(folder / "b.GLTF", "b.bin", corners)
+    write_gltf(folder / "c.gltf", "data:application/octet-stream;base64,AAAA", corners)
+    (folder / "broken.gltf").write_text('{"buffers": 3}')
+    for name in ("data/far away.bin", "b.bin", "scan.bin"):
+        (folder / name).write_bytes(corners)
+    easypbr.save_image(np.zeros((2, 2, 3), np.uint8), folder / "texture.png")
+    shapes.box().save(folder / "d.obj")
+    (folder / "d.mtl").write_text("newmtl d\n")
+
+    def found(source):
+        return {str(Path(file).relative_to(folder)) for file in ObjectSpec(str(source)).files()}
+
+    assert found(folder) == {"a.gltf", "b.GLTF", "c.gltf", "broken.gltf", "scan.bin", "d.obj"}
+    assert found(folder / "*.bin") == {"scan.bin"} and found(folder / "b.*") == {"b.GLTF"}
+    assert found(folder / "b.bin") == {"b.bin"}  # A file that is named is taken.
+    with pytest.raises(ArgumentError, match="no mesh"):
+        found(folder / "b*.bin")
+    for name in ("c.gltf", "broken.gltf", "scan.bin", "d.obj"):
+        (folder / name).unlink()
+    generate(small(count=1, objects=[ObjectSpec(str(folder), "triangle", (2, 2))], writers=()), tmp_path / "set", workers=1)
+    (record,) = records(tmp_path / "set")
+    for entry in record["objects"]:
+        assert sorted(entry["box3d_size"]) == [0, 1, 1]  # Of a scan it would be 9.
+
+
 def test_specs_are_files(tmp_path):
     shapes.teapot(1, 4).save(tmp_path / "pot.ply")
     (tmp_path / "broken.ply").write_text("ply\nnonsense")

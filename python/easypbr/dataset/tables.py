@@ -2,7 +2,10 @@
 
 import dataclasses
 import glob
+import json
 import os
+import urllib.parse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -54,8 +57,8 @@ class ObjectSpec:
         return self.class_name or Path(self.source.removeprefix("builtin:")).stem
 
     def files(self) -> list[str]:
-        """The meshes that the source names; none for what is built in. Raises ArgumentError for an unknown builtin and for a
-        folder without meshes."""
+        """The meshes that the source names; none for what is built in. Buffers of glTF files, whose name may end as that of a
+        scan does (.bin), are none. Raises ArgumentError for an unknown builtin and where there is no mesh."""
         if self.source.startswith("builtin:"):
             name = self.source.removeprefix("builtin:")
             if name not in BUILTIN:
@@ -63,12 +66,36 @@ class ObjectSpec:
             return []
         if os.path.isdir(self.source):
             known = {"." + extension.lstrip(".") for extension in readable_mesh_extensions()}
-            files = [str(p) for p in sorted(Path(self.source).rglob("*")) if p.suffix.lower() in known]
+            files = without_buffers([str(p) for p in sorted(Path(self.source).rglob("*")) if p.suffix.lower() in known])
         else:
-            files = sorted(glob.glob(self.source, recursive=True)) or [self.source]
+            found = [] if os.path.exists(self.source) else sorted(glob.glob(self.source, recursive=True))
+            files = without_buffers(found) if found else [self.source]
         if not files:
-            raise ArgumentError(f"dataset: {self.source}: the folder holds no mesh")
+            raise ArgumentError(f"dataset: {self.source}: there is no mesh")
         return files
+
+
+def without_buffers(files: list[str]) -> list[str]:
+    """The files less the buffers of glTF files among and beside them."""
+    bins = [file for file in files if file.lower().endswith(".bin")]
+    if not bins:
+        return files
+    scenes = {Path(file) for file in files if file.lower().endswith(".gltf")}
+    for folder in {Path(file).parent for file in bins}:
+        scenes |= {path for path in folder.glob("*") if path.suffix.lower() == ".gltf"}
+    buffers = {path for scene in scenes for path in _buffers_of(scene)}
+    return [file for file in files if os.path.realpath(file) not in buffers]
+
+
+def _buffers_of(scene: Path) -> Iterator[str]:
+    """The files that a glTF file names as its buffers; none of one that cannot be read, of which its reader tells."""
+    try:
+        uris = [buffer["uri"] for buffer in json.loads(scene.read_bytes())["buffers"] if "uri" in buffer]
+        for uri in uris:
+            if not uri.startswith("data:"):
+                yield os.path.realpath(scene.parent / urllib.parse.unquote(uri))
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return
 
 
 @dataclasses.dataclass
