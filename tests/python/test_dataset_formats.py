@@ -2,6 +2,7 @@
 
 import io
 import json
+import tarfile
 
 import numpy as np
 import pytest
@@ -13,9 +14,11 @@ import easypbr
 from easypbr import ArgumentError, Mesh, shapes
 from easypbr.dataset import CameraSpec, DatasetSpec, LightSpec, MotionSpec, ObjectSpec, OcclusionSpec, SensorSpec, generate
 from easypbr.dataset.extents import diameter_of
+from easypbr.dataset.frame import visible_corners
 from easypbr.dataset.frames import FrameMaker
 from easypbr.dataset.lamps import random_light
 from easypbr.dataset.models import model_ply
+from easypbr.dataset.report import draw_annotations
 from easypbr.dataset.writers import encode_flow
 
 LENSES = {
@@ -132,6 +135,89 @@ def test_bop_poses_are_of_models_in_millimetres(tmp_path):
     box = shapes.box((2, 1, 0.5))
     np.testing.assert_array_equal(model.faces, box.F)
     np.testing.assert_allclose(model.vertex_normals, box.N, atol=1e-6)
+
+
+def strict(text: str):
+    """What JSON is: NaN and Infinity are none of its values."""
+    def refuse(word):
+        raise ValueError(f"{word} is no JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def distance_to(start, end, points):
+    """From points to the line between two others."""
+    along = end - start
+    t = np.clip((points - start) @ along / (along @ along), 0, 1)
+    return np.linalg.norm(points - start - t[:, None] * along, axis=1)
+
+
+def test_keypoints_say_what_is_seen(tmp_path):
+    """Of a box that stands alone, a corner is hidden where none of its three faces is turned to the camera; one beyond the
+    picture has no place. Pixels cannot tell it of a hidden corner that is within one of the outline."""
+    shapes.box((2, 1, 0.5)).save(tmp_path / "box.ply")
+    spec = small(count=8, objects=[ObjectSpec(str(tmp_path / "box.ply"), "box", size=(1.0, 2.0), rotation="any")], writers=("coco",))
+    spec.placement.margin, spec.occlusion.max_truncation = 0.0, 0.9
+    generate(spec, tmp_path / "out", workers=1)
+    annotations = strict((tmp_path / "out/annotations.json").read_text())["annotations"]
+    found = []
+    for annotation, record in zip(annotations, records(tmp_path / "out"), strict=True):
+        (entry,) = record["objects"]
+        corners = np.array(entry["corners_cam"])
+        sides = np.array([[i >> axis & 1 for axis in range(3)] for i in range(8)])
+        turned_to = np.zeros((3, 2), bool)
+        for axis in range(3):
+            for side in (0, 1):
+                middle = corners[sides[:, axis] == side].mean(0)
+                turned_to[axis, side] = (middle - corners.mean(0)) @ middle < 0
+        pixels = np.array(entry["corners_px"], float) + 0.5  # from the picture's corner
+        inside = ((pixels >= 0) & (pixels < (96, 72))).all(1)
+        seen = turned_to[np.arange(3), sides].any(1)
+        keypoints = np.reshape(annotation["keypoints"], (8, 3))
+        clear = np.full(8, True)
+        for axis in range(3):  # Outlines are edges between a face that is turned to the camera and one that is not.
+            for i in np.nonzero(sides[:, axis] == 0)[0]:
+                others = [turned_to[k, sides[i, k]] for k in range(3) if k != axis]
+                if others[0] != others[1]:
+                    clear &= seen | (distance_to(pixels[i], pixels[i + (1 << axis)], pixels) > 1.5)
+        np.testing.assert_array_equal(keypoints[clear, 2], np.where(inside, np.where(seen, 2, 1), 0)[clear])
+        np.testing.assert_allclose(keypoints[:, :2], np.where(inside[:, None], pixels, 0), atol=0.00051)
+        assert annotation["num_keypoints"] == inside.sum()
+        found += keypoints[:, 2].tolist()
+    assert min(found.count(flag) for flag in (0, 1, 2)) > 3
+
+
+def test_corners_behind_what_the_picture_shows_are_hidden():
+    depth = np.zeros((4, 5), np.float32)
+    depth[:, :3] = 2  # a wall 2 m away on the left, nothing on the right
+    corners_px = np.array([[0.5, 1.5], [0.5, 1.5], [2.5, 1.5], [4.2, 1], [4.6, 1], [-0.4, 3.4], [np.nan, np.nan], [1, 0]])
+    z = [3, 2, 3, 9, 9, 1.9, -1, 2.5]
+    visible = visible_corners(corners_px, np.c_[np.zeros((8, 2)), z], depth)
+    assert visible == [False, True, True, True, False, True, False, False]
+
+
+def test_numbers_that_are_none_are_null(tmp_path):
+    """Boxes around the camera have corners behind it, which no pixel shows."""
+    shapes.sphere().save(tmp_path / "ball.ply")
+    spec = small(count=3, objects=[ObjectSpec(str(tmp_path / "ball.ply"), "ball", size=5.0)], writers=("coco", "webdataset", "bop", "yolo"))
+    spec.placement.distance, spec.occlusion = (2.0, 2.4), OcclusionSpec(0.0, 1.0)
+    generate(spec, tmp_path / "out", workers=1)
+    texts = [path.read_text() for path in sorted((tmp_path / "out/records").iterdir())]
+    with tarfile.open(tmp_path / "out/shards/000000.tar") as tar:
+        samples = [tar.extractfile(f"{i:06d}.json").read().decode() for i in range(3)]
+    for path in (tmp_path / "out").rglob("*.json"):
+        strict(path.read_text())
+    behind = 0
+    for text, sample in zip(texts, samples, strict=True):
+        assert strict(text) == strict(sample)
+        (entry,) = strict(text)["objects"]
+        for pixel, corner in zip(entry["corners_px"], entry["corners_cam"], strict=True):
+            assert (pixel == [None, None]) == (corner[2] <= 0)
+            behind += corner[2] <= 0
+    assert 0 < behind < 24
+    (record, *_) = records(tmp_path / "out")
+    picture = np.zeros((72, 96, 3), np.uint8)
+    assert draw_annotations(picture, record["objects"], edges=True).any()
 
 
 def test_bop_models_of_several_nodes_have_normals_and_colours(tmp_path):

@@ -52,7 +52,7 @@ class FolderWriter:
         for writer in self.writers:
             for name, data in writer.frame(frame).items():
                 self.put(name, data)
-        self.put(f"records/{frame.index:06d}.json", (json.dumps(frame.record()) + "\n").encode())
+        self.put(f"records/{frame.index:06d}.json", (json.dumps(frame.record(), allow_nan=False) + "\n").encode())
 
     def put(self, name: str, data: bytes) -> None:
         """The whole file or none: written under another name, then renamed."""
@@ -128,7 +128,7 @@ def _take(file: int, path: Path) -> bool:
 
 def claim(spec: DatasetSpec, folder: Path) -> None:
     """Writes the spec into the folder, or compares it with the one that is there."""
-    text = json.dumps(dataclasses.asdict(spec), indent=1) + "\n"
+    text = json.dumps(dataclasses.asdict(spec), indent=1, allow_nan=False) + "\n"
     path = folder / "spec.json"
     if path.exists():
         if path.read_text() != text:

@@ -1,6 +1,7 @@
 """A frame of a data set as values: what writers write."""
 
 import dataclasses
+import math
 from typing import Any
 
 import numpy as np
@@ -24,11 +25,36 @@ class Frame:
     next: "NextFrame | None" = None  #: where things are a moment later, when the spec has motion
 
     def record(self) -> dict[str, Any]:
-        """All but the pixels, as JSON takes it."""
+        """All but the pixels, as JSON takes it: None for numbers that are none, as of a corner behind the camera."""
         height, width = self.depth.shape
-        return {"index": self.index, "width": width, "height": height, "K": self.K.tolist(),
-                "T_world_cam": self.T_world_cam.tolist(), "distortion": self.distortion,
-                "distortion_model": self.distortion_model, "objects": self.objects}
+        record: dict[str, Any] = _without_nan({
+            "index": self.index, "width": width, "height": height, "K": self.K.tolist(), "T_world_cam": self.T_world_cam.tolist(),
+            "distortion": self.distortion, "distortion_model": self.distortion_model, "objects": self.objects,
+        })
+        return record
+
+
+def _without_nan(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def visible_corners(corners_px: NDArray[Any], corners_cam: NDArray[Any], depth: NDArray[Any]) -> list[bool]:
+    """Which corners of a box are in the picture and not behind what it shows. Hidden is a corner that is behind all four pixels
+    around it: of a plane through the corner one of them is as far, and beyond a convex outline that ends there lies another."""
+    height, width = depth.shape
+    last = np.array([width - 1, height - 1])
+    inside = ((corners_px >= -0.5) & (corners_px < last + 0.5)).all(1)
+    first = np.floor(np.where(inside[:, None], corners_px, 0)).astype(int)
+    free = np.zeros(len(first), bool)
+    for step in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        x, y = np.clip(first + step, 0, last).T
+        free |= (depth[y, x] == 0) | (depth[y, x] >= corners_cam[:, 2] * (1 - 1e-5))
+    visible: list[bool] = (inside & free).tolist()
+    return visible
 
 
 @dataclasses.dataclass

@@ -12,7 +12,7 @@ from ..scene import Scene
 from ..viewer import Viewer
 from . import content
 from .extents import bounds, diameter_of, fitted, vertices_of
-from .frame import Frame, NextFrame
+from .frame import Frame, NextFrame, visible_corners
 from .lamps import random_light
 from .poses import direction, draw, rotation, turn_about
 from .spec import DatasetSpec
@@ -243,7 +243,7 @@ class FrameMaker:
         objects = []
         for place, instance in enumerate(wanted):
             numbers[instance.id] = place + 1
-            entry = _annotation(instance, counted[instance.name].name())
+            entry = _annotation(instance, counted[instance.name].name(), data["depth"])
             if "bop" in self.spec.writers:
                 scale = np.linalg.norm(instance.T_cam_obj[:3, 0])
                 entry["diameter"] = float(diameter_of(vertices_of(self._scene.get(instance.name))) * scale)
@@ -275,7 +275,7 @@ def sensor(picture: NDArray[Any], given: SensorSpec, random: np.random.Generator
     return decode_image(encode_jpeg(picture, round(draw(random, given.jpeg_quality))))[..., :3]
 
 
-def _annotation(instance: Instance, class_name: str) -> dict[str, Any]:
+def _annotation(instance: Instance, class_name: str, depth: NDArray[Any]) -> dict[str, Any]:
     return {
         "class": class_name,
         "category_id": instance.semantic_id,
@@ -292,5 +292,6 @@ def _annotation(instance: Instance, class_name: str) -> dict[str, Any]:
         "box3d_size": instance.box3d_size.tolist(),
         "corners_px": instance.corners_px.tolist(),
         "corners_cam": instance.corners_cam.tolist(),
+        "corners_visible": visible_corners(instance.corners_px, instance.corners_cam, depth),
         "T_cam_obj": instance.T_cam_obj.tolist(),
     }

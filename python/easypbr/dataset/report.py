@@ -37,12 +37,13 @@ def draw_annotations(picture: NDArray[Any], objects: list[dict[str, Any]], edges
     return picture
 
 
-def _line(picture: NDArray[Any], start: list[float], end: list[float], color: NDArray[Any]) -> None:
-    if not np.isfinite([*start, *end]).all():
+def _line(picture: NDArray[Any], start: list[float | None], end: list[float | None], color: NDArray[Any]) -> None:
+    ends = np.array([start, end], float)  # None, as records have it, becomes NaN.
+    if not np.isfinite(ends).all():
         return
     height, width = picture.shape[:2]
-    steps = int(min(np.abs(np.subtract(end, start)).max(), 8 * max(width, height))) + 2
-    x, y = np.rint(np.linspace(start, end, steps)).astype(int).T
+    steps = int(min(np.abs(ends[1] - ends[0]).max(), 8 * max(width, height))) + 2
+    x, y = np.rint(np.linspace(ends[0], ends[1], steps)).astype(int).T
     for dx, dy in ((0, 0), (1, 0), (0, 1)):
         inside = (x + dx >= 0) & (x + dx < width) & (y + dy >= 0) & (y + dy < height)
         picture[y[inside] + dy, x[inside] + dx] = color

@@ -18,7 +18,7 @@ from .tables import DatasetTables, Range
 
 
 def _json(value: object) -> bytes:
-    return (json.dumps(value, indent=1, allow_nan=True) + "\n").encode()
+    return (json.dumps(value, indent=1, allow_nan=False) + "\n").encode()
 
 
 def _png(array: NDArray[Any]) -> bytes:
@@ -79,7 +79,8 @@ class Writer:
 
 
 class Coco(Writer):
-    """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints."""
+    """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints: of visibility 2, of 1 behind
+    what the picture shows, of 0 beyond it."""
 
     def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         images: list[dict[str, Any]] = []
@@ -90,10 +91,11 @@ class Coco(Writer):
             for entry in record["objects"]:
                 if entry["box"][2] < 1 or entry["box"][3] < 1:
                     continue  # Nothing is seen: COCO has no empty boxes.
+                keypoints = self._keypoints(entry, record)
                 annotations.append({
                     "id": len(annotations) + 1, "image_id": record["index"], "category_id": entry["category_id"],
                     "bbox": entry["box"], "area": entry["pixels"], "iscrowd": 0, "segmentation": entry["rle"],
-                    "keypoints": self._keypoints(entry, record), "num_keypoints": 8,
+                    "keypoints": keypoints, "num_keypoints": sum(flag > 0 for flag in keypoints[2::3]),
                 })
         names = [f"corner_{i}" for i in range(8)]
         edges = [[a + 1, b + 1] for a in range(8) for b in range(a + 1, 8) if bin(a ^ b).count("1") == 1]
@@ -103,10 +105,11 @@ class Coco(Writer):
     @staticmethod
     def _keypoints(entry: dict[str, Any], record: dict[str, Any]) -> list[float]:
         flat: list[float] = []
-        for x, y in entry["corners_px"]:
-            inside = -0.5 <= x < record["width"] - 0.5 and -0.5 <= y < record["height"] - 0.5
-            # COCO's pixel edges are at integers.
-            flat += [round(x + 0.5, 3), round(y + 0.5, 3), 2] if inside else [0, 0, 0]
+        for (x, y), visible in zip(entry["corners_px"], entry["corners_visible"]):
+            if x is None or not (-0.5 <= x < record["width"] - 0.5 and -0.5 <= y < record["height"] - 0.5):
+                flat += [0, 0, 0]
+            else:  # COCO's pixel edges are at integers.
+                flat += [round(x + 0.5, 3), round(y + 0.5, 3), 2 if visible else 1]
         return flat
 
 
