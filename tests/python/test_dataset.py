@@ -233,6 +233,28 @@ def test_objects_stand_on_the_ground():
         assert np.hypot(*corners[:, [0, 2]].mean(0)) < 2
 
 
+@pytest.mark.parametrize("entry", [
+    {"rotation": "any"}, {"rotation": "upright", "tilt_deg": 70.0}, {"rotation": "upright"}, {"rotation": "none"},
+], ids=lambda entry: f"{entry['rotation']}{entry.get('tilt_deg', '')}")
+def test_lowest_vertices_touch_the_ground(tmp_path, entry):
+    """Of a ball with a smaller one beside it in a node of its own, turned and stretched."""
+    ball, child = shapes.sphere(0.5, 24), shapes.sphere(0.3, 16)
+    child.T_parent_mesh = [[0.6, -0.8, 0, 0.7], [0.8, 0.6, 0, 0.2], [0, 0, 1.5, 0.1], [0, 0, 0, 1]]
+    ball.add_child(child)
+    ball.save(tmp_path / "balls.glb")
+    spec = small(objects=[ObjectSpec(str(tmp_path / "balls.glb"), "balls", (2, 2), 1.0, **entry)], occlusion=OcclusionSpec(0.0, 1.0),
+                 placement=PlacementSpec("surface", radius=2.0), camera=CameraSpec(elevation_deg=40.0, distance=6.0))
+    whole = easypbr.Mesh(tmp_path / "balls.glb").merge().V
+    maker = FrameMaker(spec)
+    for index in range(3):
+        frame = maker.make(index)
+        assert len(frame.objects) == 2
+        for entry in frame.objects:
+            T = frame.T_world_cam @ entry["T_cam_obj"]
+            heights = whole @ T[1, :3] + T[1, 3]
+            assert abs(heights.min()) < 1e-5 < heights.max()  # metres; single precision of sizes of 1 m
+
+
 def test_impossible_specs_name_the_constraint():
     crowd = ObjectSpec(class_name="drone", count=(40, 40), size=2.0)
     with pytest.raises(ArgumentError, match="placement.collisions.*200 tries"):

@@ -23,6 +23,15 @@ def bounds(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
     return low, high
 
 
+def least_along(mesh: Mesh, direction: NDArray[Any]) -> float:
+    """The least product of a direction with a vertex of a mesh and its children, in its own frame; infinite without vertices."""
+    least = float((mesh.V @ direction).min()) if len(mesh.V) else np.inf
+    for child in mesh.children:
+        T = child.T_parent_mesh
+        least = min(least, least_along(child, T[:3, :3].T @ direction) + float(direction @ T[:3, 3]))
+    return least
+
+
 def vertices_of(mesh: Mesh) -> NDArray[Any]:
     """All vertices of a mesh and its children in its own frame."""
     V = [np.asarray(mesh.V, float).reshape(-1, 3)]

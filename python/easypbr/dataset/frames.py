@@ -11,7 +11,7 @@ from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
 from . import content
-from .extents import bounds, diameter_of, fitted, vertices_of
+from .extents import bounds, diameter_of, fitted, least_along, vertices_of
 from .frame import Frame, NextFrame, visible_corners
 from .lamps import random_light
 from .poses import direction, draw, rotation, turn_about
@@ -182,18 +182,18 @@ class FrameMaker:
         scale = size / max(float((high - low).max()), 1e-12)
         T = np.eye(4)
         T[:3, :3] = turn * scale
+        middle = T[:3, :3] @ ((low + high) / 2)
         radius = float(np.linalg.norm(high - low)) / 2 * scale
+        height = middle[1] - least_along(mesh, T[1, :3]) if given.mode == "surface" else 0.0
         for _ in range(given.tries):
             if given.mode == "frustum":
                 centre = self._in_frustum(camera, random)
             else:
                 r, a = given.radius * np.sqrt(random.random()), random.uniform(0, 2 * np.pi)
-                corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-                bottom = ((corners - (low + high) / 2) @ T[:3, :3].T)[:, 1].min()
-                centre = np.array([r * np.sin(a), -bottom, r * np.cos(a)])
+                centre = np.array([r * np.sin(a), height, r * np.cos(a)])
             if given.collisions or all(np.linalg.norm(centre - c) > radius + other for c, other in spheres):
                 spheres.append((centre, radius))
-                T[:3, 3] = centre - T[:3, :3] @ ((low + high) / 2)
+                T[:3, 3] = centre - middle
                 mesh.T_parent_mesh = T
                 return
         raise ArgumentError(
