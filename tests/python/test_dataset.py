@@ -378,6 +378,60 @@ def test_specs_are_files(tmp_path):
         generate(small(), tmp_path / "out", workers=1)
 
 
+POT = ("count = 1\nwriters = []\n[image]\nsize = [32, 24]\nsamples = 1\n[background]\nmode = 'image'\nfiles = ['back.png']\n"
+       "[surroundings]\nsource = 'pot.ply'\nsize = 0.1\n[[objects]]\nsource = 'pot.ply'\n")
+
+
+def write_pot(folder: Path) -> Path:
+    """A spec of files beside it."""
+    folder.mkdir()
+    shapes.teapot(1, 4).save(folder / "pot.ply")
+    easypbr.save_image(np.zeros((2, 2, 3), np.uint8), folder / "back.png")
+    (folder / "spec.toml").write_text(POT)
+    return folder / "spec.toml"
+
+
+def test_a_set_goes_on_however_its_spec_is_spelt(tmp_path, monkeypatch):
+    path, out = write_pot(tmp_path / "one"), tmp_path / "out"
+    (tmp_path / "link").symlink_to("one")
+    monkeypatch.chdir(path.parent)
+    generate(DatasetSpec.from_toml("spec.toml"), out, workers=1)
+    made = hashes(out)
+    for folder, spelling in ((".", path), ("..", "one/spec.toml"), (".", "../one/./spec.toml"), ("..", "link/spec.toml")):
+        monkeypatch.chdir(path.parent / folder)
+        generate(DatasetSpec.from_toml(spelling), out, workers=1)
+        assert hashes(out) == made
+    other = write_pot(tmp_path / "other")  # The same words, of other files.
+    with pytest.raises(ArgumentError, match="another spec"):
+        generate(DatasetSpec.from_toml(other), out, workers=1)
+    monkeypatch.chdir(other.parent)
+    with pytest.raises(ArgumentError, match="another spec"):
+        generate(DatasetSpec.from_toml("spec.toml"), out, workers=1)
+
+
+def test_a_run_without_an_image_does_not_block_its_folder(tmp_path):
+    path, out = write_pot(tmp_path / "one"), tmp_path / "out"
+    path.write_text(POT.replace("[[objects]]\nsource = 'pot.ply'", "[[objects]]\nsource = 'pott.ply'"))
+    for workers in (1, 2):
+        with pytest.raises(easypbr.FileError, match="pott.ply"):
+            generate(DatasetSpec.from_toml(path), out, workers=workers)
+    path.write_text(POT)
+    generate(DatasetSpec.from_toml(path), out, workers=1)
+    fresh = tmp_path / "fresh"
+    generate(DatasetSpec.from_toml(path), fresh, workers=1)
+    assert hashes(out) == hashes(fresh)
+    path.write_text(POT.replace("count = 1", "count = 2"))
+    with pytest.raises(ArgumentError, match="another spec or count"):
+        generate(DatasetSpec.from_toml(path), out, workers=1)
+
+
+def test_a_strange_spec_is_not_replaced(tmp_path):
+    (tmp_path / "spec.json").write_text('{"objects": []}')
+    with pytest.raises(ArgumentError, match="another spec"):
+        generate(small(), tmp_path, workers=1)
+    assert (tmp_path / "spec.json").read_text() == '{"objects": []}'
+
+
 def test_objects_that_are_not_seen_are_no_boxes():
     from easypbr.dataset.writers import Coco, Yolo
 

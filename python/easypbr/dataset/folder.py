@@ -10,11 +10,13 @@ import os
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from .. import _easypbr
 from ..errors import ArgumentError, FileError
 from .frame import Frame
 from .spec import DatasetSpec
+from .tables import ObjectSpec
 from .writers import WRITERS, Writer
 
 
@@ -127,11 +129,35 @@ def _take(file: int, path: Path) -> bool:
 
 
 def claim(spec: DatasetSpec, folder: Path) -> None:
-    """Writes the spec into the folder, or compares it with the one that is there."""
-    text = json.dumps(dataclasses.asdict(spec), indent=1, allow_nan=False) + "\n"
+    """Writes the spec into the folder, or compares it with the one that is there. One of which no picture has been made, as
+    when a file was not found, is replaced. Names of files are compared, and written, as absolute ones."""
+    values = with_absolute_files(json.loads(json.dumps(dataclasses.asdict(spec), allow_nan=False)))
     path = folder / "spec.json"
     if path.exists():
-        if path.read_text() != text:
+        try:
+            known = with_absolute_files(json.loads(path.read_text()))
+        except (ValueError, LookupError, TypeError, AttributeError):
+            known = None  # It is none of ours.
+        if known == values:
+            return
+        begun = any(any((folder / name).glob("*")) for name in ("images", "records"))
+        if begun or known is None:
             raise ArgumentError(f"dataset: {folder} holds a set of another spec or count: choose another folder, or remove it")
-        return
-    FolderWriter(spec, folder, []).put("spec.json", text.encode())
+    FolderWriter(spec, folder, []).put("spec.json", (json.dumps(values, indent=1) + "\n").encode())
+
+
+def with_absolute_files(values: dict[str, Any]) -> dict[str, Any]:
+    """The values of a spec, whose files are named from the root on, however they were: "a.ply" and "../set/a.ply" are one."""
+    for entry in values["objects"]:
+        entry["class_name"] = ObjectSpec(entry["source"], entry["class_name"]).name()
+        if not entry["source"].startswith("builtin:"):
+            entry["source"] = _absolute(entry["source"])
+    if values["surroundings"]["source"]:
+        values["surroundings"]["source"] = _absolute(values["surroundings"]["source"])
+    values["background"]["files"] = [_absolute(file) for file in values["background"]["files"]]
+    return values
+
+
+def _absolute(file: str) -> str:
+    folder, name = os.path.split(os.path.abspath(file))
+    return os.path.join(os.path.realpath(folder), name)
