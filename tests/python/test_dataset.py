@@ -265,6 +265,16 @@ def test_impossible_specs_name_the_constraint():
         FrameMaker(small(objects=one, placement=near, occlusion=OcclusionSpec(0.1, 0.0, 3))).make(0)
 
 
+@pytest.mark.parametrize("changes, message", [
+    ({"placement": PlacementSpec("surface", radius=1e4)}, "or make placement.radius smaller$"),
+    ({"objects": [ObjectSpec(class_name="drone", size=1e-5)]}, "or make placement.distance smaller$"),
+], ids=("beyond", "tiny"))
+def test_objects_that_cannot_be_seen_are_named(changes, message):
+    """No constraint of a spec forbids it: occlusion.min_visible is 0."""
+    with pytest.raises(ArgumentError, match="^dataset: frame 0: 3 tries: no pixel of a 'drone' was visible: .*fewer or larger.*" + message):
+        FrameMaker(small(occlusion=OcclusionSpec(0.0, 1.0, 3), **changes)).make(0)
+
+
 @pytest.mark.parametrize("text, message", [
     ("cuont = 3", "no 'cuont'.*'count'"),
     ("[camera]\nfov = 3", "no 'fov'.*fov_y_deg"),

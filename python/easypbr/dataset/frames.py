@@ -80,15 +80,27 @@ class FrameMaker:
             for instance in data["instances"]:
                 if instance.name not in counted:
                     continue
-                if instance.visible_fraction < limit.min_visible * (1 - limit.max_truncation) or not instance.pixels_visible:
-                    worst = f"occlusion.min_visible = {limit.min_visible}"
-                elif instance.truncation > limit.max_truncation:
-                    worst = f"occlusion.max_truncation = {limit.max_truncation}"
-                elif instance.pixels_visible < limit.min_visible * instance.pixels_amodal_inside:
-                    worst = f"occlusion.min_visible = {limit.min_visible}"
+                worst = self._what_fails(instance, counted[instance.name]) or worst
             if not worst:
                 return self._finish(index, random, data, camera, counted)
-        raise ArgumentError(f"dataset: frame {index}: {worst} was not met in {limit.tries} tries: relax it, or show fewer objects")
+        raise ArgumentError(f"dataset: frame {index}: {limit.tries} tries: {worst}")
+
+    def _what_fails(self, instance: Instance, entry: ObjectSpec) -> str:
+        """Which constraint an object does not meet, and what helps; empty when it meets all."""
+        limit, placement = self.spec.occlusion, self.spec.placement
+        if not instance.pixels_visible:
+            key = "placement.distance" if placement.mode == "frustum" else "placement.radius"
+            others = ", or make surroundings.size larger" if self.spec.surroundings.source else ""
+            return (f"no pixel of a '{entry.name()}' was visible: annotated objects must be in the image and not hidden: "
+                    f"show fewer or larger objects, or make {key} smaller{others}")
+        if instance.truncation > limit.max_truncation:
+            failed = f"occlusion.max_truncation = {limit.max_truncation}"
+        elif (instance.visible_fraction < limit.min_visible * (1 - limit.max_truncation)
+              or instance.pixels_visible < limit.min_visible * instance.pixels_amodal_inside):
+            failed = f"occlusion.min_visible = {limit.min_visible}"
+        else:
+            return ""
+        return f"{failed} was not met: relax it, or show fewer objects"
 
     def _attempt(self, random: np.random.Generator) -> tuple[dict[str, Any], Camera, dict[str, ObjectSpec]]:
         spec = self.spec
