@@ -73,6 +73,30 @@ TEST(Ply, ReadsEveryTypeAndSpellingInEveryFormat) {
     }
 }
 
+TEST(Ply, ColorsOfEveryTypeAre0To1) {
+    const auto color_of = [](const std::string& format, const std::string& type,
+                             std::array<double, 3> color) {
+        PlyBuilder ply(format);
+        ply.header("element vertex 1\nproperty float x\nproperty float y\nproperty float z");
+        for (const char* name : {"red", "green", "blue"}) ply.header("property " + type + " " + name);
+        ply.end_header();
+        ply.values("float", {1, 2, 3}).values(type, color).end_row();
+        const MeshData mesh = read(ply.text());
+        return Vec3(mesh.C.row(0));
+    };
+    for (const std::string& format : formats) {
+        for (const char* type : {"uchar", "short", "int", "uint", "float", "double"})
+            EXPECT_TRUE(color_of(format, type, {255, 51, 0}).isApprox(Vec3(1, 0.2f, 0), 1e-6f)) << type;
+        for (const char* type : {"char", "short", "int", "uint", "float", "double"})
+            EXPECT_EQ(color_of(format, type, {1, 0, 1}), Vec3(1, 0, 1)) << type;
+        for (const char* type : {"ushort", "int", "float", "double"})
+            EXPECT_TRUE(color_of(format, type, {65535, 13107, 0}).isApprox(Vec3(1, 0.2f, 0), 1e-6f)) << type;
+        // 51 / 127 would be the range of the type.
+        EXPECT_TRUE(color_of(format, "char", {51, 0, 102}).isApprox(Vec3(0.2f, 0, 0.4f), 1e-6f));
+        EXPECT_EQ(color_of(format, "float", {1.25, 0.5, -0.25}), Vec3(1, 0.5f, 0));
+    }
+}
+
 TEST(Ply, CutsPolygonsIntoFansAndRemembersThem) {
     for (const std::string& format : formats) {
         PlyBuilder ply = with_vertices(format, "element face 3\n" + face_header);

@@ -48,6 +48,19 @@ def test_values_out_of_range_are_refused(name, value):
         assert getattr(material, name) == before
 
 
+def test_codes_are_no_base_color():
+    mesh = easypbr.shapes.box()
+    for material in (Material(), mesh.material):
+        before = material.base_color
+        for color in ((255, 0, 0), (1.5, 0, 0), np.array([0, 0, 2.0])):
+            with pytest.raises(ArgumentError, match="base_color: expected a colour.*3 numbers from 0 to 1, got"):
+                material.base_color = color
+        assert material.base_color == before
+        material.base_color = (1, 0, 1)
+        material.emissive = (255, 0, 0)
+        assert material.base_color == (1, 0, 1) and material.emissive == (255, 0, 0)
+
+
 def test_alpha_mode():
     material = Material()
     assert material.alpha_mode == "auto"

@@ -107,6 +107,56 @@ def test_byte_colors_are_scaled(square):
     np.testing.assert_allclose(mesh.C[0], [0, 0.2, 1], atol=1e-7)
 
 
+CODES = np.array([[255, 0, 51], [0, 204, 0], [102, 0, 255], [255, 255, 255]])
+
+
+@pytest.mark.parametrize("given", [
+    CODES, CODES.tolist(), CODES.astype(np.int32), CODES.astype(np.int16), CODES.astype(np.uint64), CODES.astype(np.float32),
+    CODES.astype(float), CODES.astype(np.uint8), CODES / 255, (CODES * 257).astype(np.uint16),
+], ids=["int64", "list", "int32", "int16", "uint64", "float32", "float64", "uint8", "0 to 1", "uint16"])  # fmt: skip
+def test_colors_of_any_type_are_0_to_1(square, given, tmp_path):
+    mesh = Mesh(*square)
+    mesh.C = given
+    np.testing.assert_allclose(mesh.C, CODES / 255, atol=1e-7)
+    mesh.C = None
+    mesh.assign(C=given)
+    np.testing.assert_allclose(mesh.C, CODES / 255, atol=1e-7)
+    np.testing.assert_allclose(easypbr.as_mesh({"points": square[0], "colors": given}).C, CODES / 255, atol=1e-7)
+    np.savez(tmp_path / "colors.npz", points=square[0], colors=given)
+    np.testing.assert_allclose(Mesh(tmp_path / "colors.npz").C, CODES / 255, atol=1e-7)
+
+
+@pytest.mark.parametrize("dtype", [np.int64, np.int16, np.int8, np.float64])
+def test_zeros_and_ones_are_no_codes(square, dtype, tmp_path):
+    ones = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype)
+    mesh = Mesh(*square)
+    mesh.C = ones
+    np.testing.assert_array_equal(mesh.C, ones)
+    np.testing.assert_array_equal(easypbr.as_mesh({"points": square[0], "colors": ones}).C, ones)
+    np.savez(tmp_path / "ones.npz", points=square[0], colors=ones)
+    np.testing.assert_array_equal(Mesh(tmp_path / "ones.npz").C, ones)
+    mesh.C = ones.astype(np.uint8)
+    assert mesh.C.max() == np.float32(1 / 255), "the type tells"
+
+
+def test_colors_that_were_rounded_are_clamped(square):
+    mesh = Mesh(*square)
+    mesh.C = np.array([[1.0000002, 0.5, -1e-7]] * 4)
+    np.testing.assert_array_equal(mesh.C, [[1, 0.5, 0]] * 4)
+
+
+@pytest.mark.parametrize("given, found", [
+    ([[300, 0, 0]] * 4, "0 to 300"), ([[-1, 0, 0]] * 4, "-1 to 0"), ([[1.5, 0, 0]] * 4, "0 to 1.5"),
+    ([[1.0, 0, 0, 255]] * 4, "an alpha of up to 255"), ([[np.inf, 0, 0]] * 4, "0 to inf"),
+])  # fmt: skip
+def test_colors_of_neither_range_are_refused(square, given, found):
+    mesh = Mesh(*square)
+    for change in (lambda: setattr(mesh, "C", given), lambda: easypbr.as_mesh({"points": square[0], "colors": given})):
+        with pytest.raises(easypbr.ArgumentError, match=f"colours: expected 0 to 1 or 0 to 255.*got {found}"):
+            change()
+    assert len(mesh.C) == 0
+
+
 def test_edit_puts_the_copy_in_place_only_when_the_block_ends_well(square):
     V, F = square
     mesh = Mesh(V, F)

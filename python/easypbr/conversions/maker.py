@@ -132,8 +132,8 @@ def rows(array: Any, count: int) -> NDArray[Any] | None:
 
 
 def colors(array: Any, count: int) -> NDArray[Any] | None:
-    """Colours of `count` rows as a mesh takes them: uint8 and uint16 as they are, floats 0 to 1; other integers and floats
-    above 1 are 0 to 255. None: the array has another number of rows. Raises ArgumentError for other values."""
+    """Colours of `count` rows as a mesh takes them: uint8 and uint16 as they are; of other types 0 to 1 if none is above 1,
+    else 0 to 255. None: the array has another number of rows. Raises ArgumentError for other values."""
     found = rows(array, count)
     if found is None:
         return None
@@ -143,13 +143,7 @@ def colors(array: Any, count: int) -> NDArray[Any] | None:
         return found
     if found.dtype.kind not in "fiu":
         raise ArgumentError(f"colours: expected numbers, got {found.dtype}")
-    low, high = (np.nanmin(found), np.nanmax(found)) if np.isfinite(found).any() else (0.0, 0.0)
-    if not (low >= 0 and high <= 255):
-        raise ArgumentError(f"colours: expected 0 to 1 or 0 to 255, got {low:g} to {high:g}")
-    is_bytes = found.dtype.kind in "iu" or high > 1
-    if is_bytes and found.shape[1] == 4 and found.dtype.kind == "f" and found[:, :3].max() <= 1:
-        raise ArgumentError(f"colours: expected 0 to 1 or 0 to 255 in all columns, got an alpha of up to {high:g}")
-    return found / 255.0 if is_bytes else found
+    return np.asarray(_easypbr.unit_colors(found))
 
 
 def triangles(faces: Any) -> NDArray[Any] | None:

@@ -38,6 +38,12 @@ void color_property(MaterialClass& material, const MaterialColor& color) {
         color.name, [&color](const MaterialHandle& m) { return vector_to_tuple(m.get().*color.value); },
         [&color](MaterialHandle& m, const ColorLike& value) {
             const Vec3 linear = to_linear_color(value, color.name);
+            // The library takes what files have; 255 is a mistake.
+            if (color.value == &Material::base_color && (linear.array() > 1).any())
+                throw ArgumentError(fmt::format(
+                    "material.base_color: expected a colour: '#rrggbb', a name, or 3 numbers from 0 to 1, "
+                    "got ({}, {}, {})",
+                    linear.x(), linear.y(), linear.z()));
             m.change([&](Material& own) { own.*color.value = linear; });
         },
         color.doc);

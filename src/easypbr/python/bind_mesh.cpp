@@ -28,17 +28,23 @@ struct MeshArray {
 };
 
 template <class Scalar, int Cols, Array<Scalar, Cols> MeshData::*member>
-std::function<void(MeshData&)> prepare(nb::handle object, const ArrayShape& shape, bool normalize) {
+std::function<void(MeshData&)> prepare(nb::handle object, const ArrayShape& shape) {
     Array<Scalar, Cols> array;
-    if (!object.is_none()) array = to_array<Scalar, Cols>(object, shape, normalize);
+    if (!object.is_none()) array = to_array<Scalar, Cols>(object, shape);
     return [array](MeshData& data) { data.*member = array; };
+}
+
+std::function<void(MeshData&)> prepare_colors(nb::handle object) {
+    ArrayXf C;
+    if (!object.is_none()) C = to_colors(object, {"C", 3, 4});
+    return [C](MeshData& data) { data.C = C; };
 }
 
 /// The same for what makes vertices splats.
 template <int Cols, Array<float, Cols> SplatArrays::*member>
 MeshChange prepare_splats(nb::handle object, const ArrayShape& shape) {
     Array<float, Cols> array;
-    if (!object.is_none()) array = to_array<float, Cols>(object, shape, false);
+    if (!object.is_none()) array = to_array<float, Cols>(object, shape);
     return [array](MeshData& data) { data.splats.*member = array; };
 }
 
@@ -75,7 +81,7 @@ std::function<void(MeshData&)> prepare_V(nb::handle object) {
 }
 
 std::function<void(MeshData&)> prepare_F(nb::handle object) {
-    const auto assign = prepare<int32_t, 3, &MeshData::F>(object, {"F", 3, 3}, false);
+    const auto assign = prepare<int32_t, 3, &MeshData::F>(object, {"F", 3, 3});
     return [assign](MeshData& data) {
         assign(data);
         data.parts.clear();
@@ -93,36 +99,35 @@ const std::vector<MeshArray>& mesh_arrays() {
         {"N", "n x 3 float32 unit normals; empty: computed when the mesh is drawn.",
          view<float, 3, &MeshData::N>,
          [](nb::handle o) {
-             return prepare<float, 3, &MeshData::N>(o, {"N", 3, 3}, false);
+             return prepare<float, 3, &MeshData::N>(o, {"N", 3, 3});
          }},
-        {"C", "n x 3 or n x 4 float32 sRGB colours, 0 to 1; uint8 is scaled when assigned.",
-         view<float, Eigen::Dynamic, &MeshData::C>,
-         [](nb::handle o) {
-             return prepare<float, Eigen::Dynamic, &MeshData::C>(o, {"C", 3, 4}, true);
-         }},
+        {"C",
+         "n x 3 or n x 4 float32 sRGB colours, 0 to 1. When assigned, uint8 and uint16 span their range; "
+         "others are 0 to 1 if none is above 1, else 0 to 255, and what is neither is refused.",
+         view<float, Eigen::Dynamic, &MeshData::C>, prepare_colors},
         {"UV", "n x 2 float32 texture coordinates, v upwards.", view<float, 2, &MeshData::UV>,
          [](nb::handle o) {
-             return prepare<float, 2, &MeshData::UV>(o, {"UV", 2, 2}, false);
+             return prepare<float, 2, &MeshData::UV>(o, {"UV", 2, 2});
          }},
         {"T", "n x 3 float32 tangents of surfels.", view<float, 3, &MeshData::T>,
          [](nb::handle o) {
-             return prepare<float, 3, &MeshData::T>(o, {"T", 3, 3}, false);
+             return prepare<float, 3, &MeshData::T>(o, {"T", 3, 3});
          }},
         {"B", "n float32 bitangent lengths of surfels.", view<float, 1, &MeshData::B>,
          [](nb::handle o) {
-             return prepare<float, 1, &MeshData::B>(o, {"B", 1, 1}, false);
+             return prepare<float, 1, &MeshData::B>(o, {"B", 1, 1});
          }},
         {"F", "m x 3 int32 vertex indices of triangles, counter-clockwise seen from outside.",
          view<int32_t, 3, &MeshData::F>, prepare_F},
         {"E", "k x 2 int32 vertex indices of line segments.", view<int32_t, 2, &MeshData::E>,
          [](nb::handle o) {
-             return prepare<int32_t, 2, &MeshData::E>(o, {"E", 2, 2}, false);
+             return prepare<int32_t, 2, &MeshData::E>(o, {"E", 2, 2});
          }},
         {"L", "int32 labels, one per vertex or per face (per vertex if both numbers are equal).",
          view<int32_t, 1, &MeshData::L>, prepare_labels},
         {"I", "n float32 intensities.", view<float, 1, &MeshData::I>,
          [](nb::handle o) {
-             return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1}, false);
+             return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1});
          }},
         {"scales", "n x 3 float32 standard deviations of splats along their own axes.",
          view_splats<3, &SplatArrays::scales>,
@@ -331,6 +336,13 @@ void bind_mesh(nb::module_& module) {
              nb::arg("prefetch"))
         .def("next", [](io::MeshQueue& queue) { return released([&] { return queue.next(); }); })
         .def("__len__", &io::MeshQueue::size);
+    module.def(
+        "unit_colors",
+        [](const ArrayLike& colors) {
+            return view_of(to_colors(colors, {"C", 3, 4}));
+        },
+        nb::arg("colors"), nb::sig("def unit_colors(colors: numpy.typing.ArrayLike) -> numpy.ndarray"),
+        "Colours as Mesh.C takes them, 0 to 1.");
     module.def("readable_mesh_extensions", [] { return released([] { return io::readable_extensions(); }); });
 }
 

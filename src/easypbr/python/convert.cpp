@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/python/text.h"
+#include "easypbr/scene/color_range.h"
 
 namespace easypbr::python {
 namespace {
@@ -98,17 +100,37 @@ bool fits_int32(Element value) {
 }
 
 template <class Dense, class Element>
-void copy_floats(Dense& result, const Element* data, const Layout& layout, bool normalize) {
-    const bool scaled = normalize && std::is_integral_v<Element>;
-    const float scale = scaled ? 1.0f / float(std::numeric_limits<Element>::max()) : 1.0f;
+void copy_floats(Dense& result, const Element* data, const Layout& layout, float scale = 1) {
     copy_rows(result, data, layout, [scale](Element value, Eigen::Index) { return float(value) * scale; });
+}
+
+/// Colours of a type that does not tell their range become 0 to 1.
+void normalize_given_colors(ArrayXf::Dense& C, bool integers, const ArrayShape& shape) {
+    constexpr float rounding = 1e-3f;
+    const ColorRange range = range_of_colors(C);
+    const float white = white_of(range);
+    const bool known =
+        range.low >= -rounding && range.high <= 255 && (white > 1 || range.high <= 1 + rounding);
+    if (!known)
+        throw ArgumentError(
+            fmt::format("mesh array {}, colours: expected 0 to 1 or 0 to 255, got {:g} to {:g}", shape.name,
+                        range.low, range.high));
+    if (!integers && white > 1 && C.cols() == 4 && range_of_colors(C.leftCols(3)).high < 2)
+        throw ArgumentError(
+            fmt::format("mesh array {}, colours: expected 0 to 1 or 0 to 255 in all columns, got "
+                        "an alpha of up to {:g}",
+                        shape.name, range.high));
+    parallel_for(size_t(C.size()), copy_grain, [&](size_t i) {
+        float& value = C.data()[i];
+        value = std::clamp(value / white, 0.0f, 1.0f);
+    });
 }
 
 template <class Element>
 Array3f copy_local(const Element* data, const Layout& layout, const Vec3d& offset) {
     Array3f::Dense rows(layout.rows, layout.cols);
     if (offset.isZero(0))
-        copy_floats(rows, data, layout, false);
+        copy_floats(rows, data, layout);
     else
         copy_rows(rows, data, layout,
                   [&](Element value, Eigen::Index col) { return float(double(value) - offset[col]); });
@@ -262,7 +284,7 @@ nb::tuple vector_to_tuple(const Vec3& vector) {
 }
 
 template <class Scalar, int Cols>
-typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape, bool normalize) {
+typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape) {
     const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
     const Layout layout = layout_of(array, shape);
     typename Array<Scalar, Cols>::Dense result(layout.rows, layout.cols);
@@ -271,10 +293,22 @@ typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape
             if constexpr (std::is_integral_v<Scalar>)
                 copy_integers(result, data, layout, array, shape);
             else
-                copy_floats(result, data, layout, normalize);
+                copy_floats(result, data, layout);
         });
     });
     return result;
+}
+
+ArrayXf to_colors(nb::handle object, const ArrayShape& shape) {
+    ArrayXf::Dense C;
+    visit_rows(object, shape, [&](const auto* data, const Layout& layout) {
+        using Element = std::remove_cvref_t<decltype(*data)>;
+        constexpr bool spans = std::is_same_v<Element, uint8_t> || std::is_same_v<Element, uint16_t>;
+        C.resize(layout.rows, layout.cols);
+        copy_floats(C, data, layout, spans ? 1.0f / float(std::numeric_limits<Element>::max()) : 1.0f);
+        if (!spans) normalize_given_colors(C, std::is_integral_v<Element>, shape);
+    });
+    return C;
 }
 
 LocalPositions to_positions(nb::handle object, const ArrayShape& shape) {
@@ -303,14 +337,14 @@ Array3f to_local(nb::handle object, const ArrayShape& shape, const Vec3d& offset
     return result;
 }
 
-template Array1f::Dense to_array<float, 1>(nb::handle, const ArrayShape&, bool);
-template Array2f::Dense to_array<float, 2>(nb::handle, const ArrayShape&, bool);
-template Array3f::Dense to_array<float, 3>(nb::handle, const ArrayShape&, bool);
-template ArrayXf::Dense to_array<float, Eigen::Dynamic>(nb::handle, const ArrayShape&, bool);
-template Array4f::Dense to_array<float, 4>(nb::handle, const ArrayShape&, bool);
-template Array1i::Dense to_array<int32_t, 1>(nb::handle, const ArrayShape&, bool);
-template Array2i::Dense to_array<int32_t, 2>(nb::handle, const ArrayShape&, bool);
-template Array3i::Dense to_array<int32_t, 3>(nb::handle, const ArrayShape&, bool);
+template Array1f::Dense to_array<float, 1>(nb::handle, const ArrayShape&);
+template Array2f::Dense to_array<float, 2>(nb::handle, const ArrayShape&);
+template Array3f::Dense to_array<float, 3>(nb::handle, const ArrayShape&);
+template ArrayXf::Dense to_array<float, Eigen::Dynamic>(nb::handle, const ArrayShape&);
+template Array4f::Dense to_array<float, 4>(nb::handle, const ArrayShape&);
+template Array1i::Dense to_array<int32_t, 1>(nb::handle, const ArrayShape&);
+template Array2i::Dense to_array<int32_t, 2>(nb::handle, const ArrayShape&);
+template Array3i::Dense to_array<int32_t, 3>(nb::handle, const ArrayShape&);
 
 nb::object to_numpy(Image image) {
     auto* held = new Image(std::move(image));

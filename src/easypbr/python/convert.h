@@ -68,12 +68,14 @@ struct ArrayShape {
     int more_columns;  ///< or these
 };
 
-/// The object's numbers, copied once and in parallel. Integers are divided by their type's largest value when
-/// `normalize` is set. Integer arrays take whole numbers within int32. Throws ArgumentError that names the
-/// array, the expected and the given shape.
+/// The object's numbers, copied once and in parallel. Integer arrays take whole numbers within int32. Throws
+/// ArgumentError that names the array, the expected and the given shape.
 template <class Scalar, int Cols>
-typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape,
-                                             bool normalize = false);
+typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape);
+
+/// Colours as 0 to 1. uint8 and uint16 span the range of their type; of others the values tell whether they
+/// are 0 to 1 or 0 to 255 (scene/color_range.h). Throws ArgumentError for numbers of neither range.
+ArrayXf to_colors(nb::handle object, const ArrayShape& shape);
 
 /// The object's numbers as positions. Those of a type with more than float32 holds are recentred where
 /// float32 would lose what matters (scene/offset.h); the offset is what was subtracted. Throws as to_array().

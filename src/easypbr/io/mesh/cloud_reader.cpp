@@ -57,7 +57,6 @@ class CloudPlan {
 
     MeshData mesh() {
         MeshData result;
-        arrays_->normalize_real_colors();
         arrays_->move_into(result);
         return result;
     }

@@ -12,6 +12,7 @@
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/attributes.h"
+#include "easypbr/scene/color_range.h"
 #include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/offset.h"
 
@@ -89,18 +90,9 @@ void plan_floats(const std::vector<VertexField>& fields, const std::vector<size_
     }
 }
 
-/// Colours stored as integers span the range of their type; those of 4 bytes and more are used for 0 .. 255.
+/// Colours of these two types span their range; those of others are used for 0 .. 1 and for 0 .. 255.
 double color_scale(ScalarType type) {
-    switch (type) {
-        case ScalarType::int8:
-            return 1 / 127.0;
-        case ScalarType::int16:
-            return 1 / 32767.0;
-        case ScalarType::uint16:
-            return 1 / 65535.0;
-        default:
-            return is_integer(type) ? 1 / 255.0 : 1;
-    }
+    return type == ScalarType::uint8 ? 1 / 255.0 : type == ScalarType::uint16 ? 1 / 65535.0 : 1.0;
 }
 
 }  // namespace
@@ -133,10 +125,9 @@ void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t co
     const auto color = find_spelling(fields, color_names);
     plan_floats(fields, color, count, C_);
     for (const size_t i : color) {
-        fields[i].column->scale = color_scale(fields[i].property.type);
         const ScalarType type = fields[i].property.type;
-        real_colors_ = !is_integer(type);
-        may_leave_range_ |= type != ScalarType::uint8 && type != ScalarType::uint16;
+        fields[i].column->scale = color_scale(type);
+        colors_tell_range_ |= color_scale(type) == 1;
     }
 }
 
@@ -173,22 +164,12 @@ void VertexArrays::recentre_positions() {
     });
 }
 
-void VertexArrays::normalize_real_colors() {
-    if (!real_colors_ || C_.size() == 0) return;
-    std::vector<float> largest((size_t(C_.size()) + array_grain - 1) / array_grain, 0.0f);
-    parallel_chunks(size_t(C_.size()), array_grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            largest[begin / array_grain] = std::max(largest[begin / array_grain], C_.data()[i]);
-    });
-    const float most = *std::ranges::max_element(largest);
-    if (most <= 1) return;
-    const float full = most <= 255 ? 255.0f : 65535.0f;
-    parallel_for(size_t(C_.size()), array_grain, [&](size_t i) { C_.data()[i] /= full; });
-}
-
 void VertexArrays::move_into(MeshData& mesh) {
     tidy_normals(N_);
-    if (may_leave_range_) tidy_colors(C_);
+    if (colors_tell_range_) {
+        normalize_colors(C_);
+        tidy_colors(C_);
+    }
     tidy_uv(UV_);
     mesh.offset = offset_;
     mesh.V = std::move(V_);

@@ -41,10 +41,8 @@ class VertexArrays {
     void check(const Source& source) const { check_positions(source, V_); }
     Eigen::Index count() const { return V_.rows(); }
 
-    /// Colours that were written as real numbers: 0 .. 255 or 0 .. 65535 become 0 .. 1.
-    void normalize_real_colors();
-
-    /// Fills the mesh, with attributes in the ranges that MeshData promises. Leaves nothing here.
+    /// Fills the mesh, with attributes in the ranges that MeshData promises: colours of other types than
+    /// uint8 and uint16 may be 0 .. 1, 0 .. 255 or 0 .. 65535. Leaves nothing here.
     void move_into(MeshData& mesh);
 
   private:
@@ -59,7 +57,7 @@ class VertexArrays {
     std::optional<std::array<size_t, 3>> position_;
     std::array<Column*, 3> position_columns_{};
     Vec3d offset_ = Vec3d::Zero();
-    bool real_colors_ = false, may_leave_range_ = false;  ///< of colours
+    bool colors_tell_range_ = false;  ///< by their values; else their type does
     Array3f::Dense V_, N_, T_;
     ArrayXf::Dense C_;
     Array2f::Dense UV_;
