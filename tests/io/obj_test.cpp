@@ -56,6 +56,16 @@ TEST(Obj, ReadsVertexColorsAndLines) {
     EXPECT_EQ(mesh.F.rows(), 0);
 }
 
+TEST(Obj, ReadsVertexColorsAsCodes) {
+    const MeshData mesh = read("v 0 0 0\nv 1 0 0 255 51 0\nv 0 1 0 102 0 204\nl 1 2 3\n");
+    ASSERT_EQ(mesh.C.rows(), 3);
+    EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(1, 1, 1)) << "a vertex without a colour is white";
+    EXPECT_TRUE(Vec3(mesh.C.row(1)).isApprox(Vec3(1, 0.2f, 0), 1e-6f));
+    EXPECT_TRUE(Vec3(mesh.C.row(2)).isApprox(Vec3(0.4f, 0, 0.8f), 1e-6f));
+    // What was rounded is no code.
+    EXPECT_EQ(Vec3(read("v 0 0 0 1.0001 0.5 0\n").C.row(0)), Vec3(1, 0.5f, 0));
+}
+
 TEST(Obj, KeepsVerticesWhoseIndicesAgree) {
     const MeshData mesh = read(square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
     EXPECT_EQ(mesh.V.rows(), 4);

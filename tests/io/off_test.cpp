@@ -37,6 +37,7 @@ TEST(Off, ReadsAttributesInTheOrderOfTheManual) {
     EXPECT_EQ(Vec2(mesh.UV.row(0)), Vec2(0.25f, 0.75f));
     EXPECT_EQ(read("NOFF\n1 0 0\n1 2 3 0 0 1\n").N(0, 2), 1);
     EXPECT_EQ(read("COFF\n1 0 0\n1 2 3 1 0.5 0\n").C(0, 1), 0.5f) << "real colours are taken as they are";
+    EXPECT_EQ(read("COFF\n1 0 0\n1 2 3 1.0001 0.5 0\n").C(0, 1), 0.5f) << "what was rounded is no code";
     EXPECT_EQ(read("OFF\n1 0 0\n1 2 3 255 0 0\n").C.cols(), 3) << "colours of a plain OFF";
 }
 

@@ -83,8 +83,8 @@ class ChunkParser {
         for (size_t i = 0; i < 3; ++i)
             chunk_.positions.push_back(float(value[i] - Number(offset_[Eigen::Index(i)])));
         if (count < 6 && chunk_.colors.empty()) return;
-        chunk_.colors.resize(chunk_.positions.size() - 3, 1.0f);
-        for (size_t i = 3; i < 6; ++i) chunk_.colors.push_back(count == 6 ? float(value[i]) : 1.0f);
+        chunk_.colors.resize(chunk_.positions.size() - 3, no_color);
+        for (size_t i = 3; i < 6; ++i) chunk_.colors.push_back(count == 6 ? float(value[i]) : no_color);
     }
 
     /// At least `least` numbers; those up to `width` that are missing are 0.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,8 @@ enum ObjIndex { obj_position, obj_uv, obj_normal };
 
 /// The index of a corner that has none.
 inline constexpr int32_t no_index = -1;
+/// Of a vertex without a colour beside others that have one.
+inline constexpr float no_color = std::numeric_limits<float>::quiet_NaN();
 
 /// Indices of one kind. Those in `relative` count from the first vertex of the chunk, the others from the
 /// file's first.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "easypbr/io/mesh/obj/obj_chunk.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/attributes.h"
+#include "easypbr/scene/color_range.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -103,8 +105,12 @@ class ObjReader {
         const bool colored =
             std::any_of(chunks_.begin(), chunks_.end(), [](const auto& c) { return !c.colors.empty(); });
         if (colored) {
-            for (ObjChunk& chunk : chunks_) chunk.colors.resize(chunk.positions.size(), 1.0f);
+            for (ObjChunk& chunk : chunks_) chunk.colors.resize(chunk.positions.size(), no_color);
             join_floats(&ObjChunk::colors, 3, C_);
+            normalize_colors(C_);
+            parallel_for(size_t(C_.size()), obj_grain, [&](size_t i) {
+                if (std::isnan(C_.data()[i])) C_.data()[i] = 1;
+            });
         }
         join_floats(&ObjChunk::positions, 3, V_);
         join_floats(&ObjChunk::uv, 2, uv_);

@@ -6,6 +6,7 @@
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/attributes.h"
 #include "easypbr/io/tables/element_table.h"
+#include "easypbr/scene/color_range.h"
 
 namespace easypbr::io {
 namespace {
@@ -141,9 +142,8 @@ class OffReader {
     MeshData make_mesh() {
         check_positions(source_, V_);
         check_indices(source_, {faces_.values.data(), faces_.value_count()}, header_.vertices, "a face");
-        // Colours are written as 0 .. 255 or as 0 .. 1.
-        if (C_.size() && C_.maxCoeff() > 1) C_ /= 255;
         tidy_normals(N_);
+        normalize_colors(C_);
         tidy_colors(C_);
         tidy_uv(UV_);
         MeshData mesh;
