@@ -152,6 +152,19 @@ TEST(Npz, CutsPolygonsAndKeepsTheirValues) {
     EXPECT_EQ(mesh.L[1], 5);
 }
 
+TEST(Npz, FacesKeepTheirValuesWhenThereAreAsManyVertices) {
+    // Two quads are four triangles of four vertices.
+    const MeshData mesh =
+        read_archive({{"V.npy", npy("'<f4'", "(4, 3)", values<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}))},
+                      {"F.npy", npy("'<i4'", "(2, 4)", values<int32_t>({0, 1, 2, 3, 3, 2, 1, 0}))},
+                      {"L.npy", npy("'<i4'", "(2,)", values<int32_t>({5, 6}))}});
+    ASSERT_EQ(mesh.L.rows(), 4);
+    EXPECT_EQ(element_of(mesh, mesh.L.rows()), PerElement::face);
+    EXPECT_EQ(mesh.L[1], 5);
+    EXPECT_EQ(mesh.L[2], 6);
+    EXPECT_EQ(mesh.V.rows(), 5);
+}
+
 TEST(Npz, LeavesOutWhatItDoesNotUnderstandWithAWarning) {
     std::vector<std::string> warnings;
     set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });

@@ -251,6 +251,99 @@ TEST(Ply, ReadsLabelsOfFaces) {
     EXPECT_EQ(mesh.L[1], 5);
 }
 
+TEST(Ply, FacesKeepTheirValuesWhenThereAreAsManyVertices) {
+    const std::string tetrahedron =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float heat\nelement face 4\nproperty list uchar int vertex_indices\nproperty int label\n"
+        "property float q\nend_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n0 0 1 4\n"
+        "3 0 1 2 5 .5\n3 0 1 3 6 .25\n3 1 2 3 7 .125\n3 0 2 3 8 .75\n";
+    const MeshData mesh = read(tetrahedron);
+    EXPECT_EQ(mesh.F, triangles({0, 1, 2, 0, 1, 3, 1, 2, 3, 0, 2, 3}))
+        << "no face uses the vertex that is new";
+    ASSERT_EQ(mesh.L.rows(), 4);
+    EXPECT_EQ(element_of(mesh, mesh.L.rows()), PerElement::face);
+    EXPECT_EQ(Eigen::Vector4i(mesh.L), Eigen::Vector4i(5, 6, 7, 8));
+    const Array1f q = scalar_named(mesh, "q").values;
+    ASSERT_EQ(q.rows(), 4);
+    EXPECT_EQ(Vec4(q), Vec4(0.5f, 0.25f, 0.125f, 0.75f));
+    ASSERT_EQ(mesh.V.rows(), 5);
+    EXPECT_EQ(Vec3(mesh.V.row(4)), Vec3(0, 0, 1));
+    EXPECT_EQ(scalar_named(mesh, "heat").values[4], 4) << "values of the vertices have one more";
+    EXPECT_EQ(mesh.source_vertex[4], 3);
+    EXPECT_EQ(mesh.source_vertex[2], 2);
+}
+
+TEST(Ply, ColorsOfFacesSplitVertices) {
+    for (const std::string& format : formats) {
+        // Red, red and a quarter transparent green; vertices 1 and 2 belong to all.
+        PlyBuilder ply(format);
+        ply.header("element vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement face 3");
+        ply.header(face_header + "\nproperty uchar red\nproperty uchar green\nproperty uchar blue");
+        ply.header("property uchar alpha\nproperty int label\nelement edge 1\nproperty int vertex1");
+        ply.header("property int vertex2").end_header();
+        for (const auto& corner : corners) ply.values("float", corner).end_row();
+        ply.values("float", {7, 7, 7}).end_row();
+        const auto face = [&](std::array<double, 3> vertices, std::array<double, 4> color, int label) {
+            ply.value("uchar", 3)
+                .values("int", vertices)
+                .values("uchar", color)
+                .value("int", label)
+                .end_row();
+        };
+        face({0, 1, 2}, {255, 0, 0, 255}, 4);
+        face({0, 2, 1}, {255, 0, 0, 255}, 5);
+        face({1, 3, 2}, {0, 51, 0, 204}, 6);
+        ply.values("int", {3, 1}).end_row();
+        const MeshData mesh = read(ply.text());
+        const Vec4 red(1, 0, 0, 1), green(0, 0.2f, 0, 0.8f);
+        ASSERT_EQ(mesh.C.cols(), 4) << format;
+        ASSERT_EQ(mesh.V.rows(), 7) << "vertices of faces of one colour are one";
+        for (int corner = 0; corner < 3; ++corner) {
+            EXPECT_EQ(Vec4(mesh.C.row(mesh.F(0, corner))), red);
+            EXPECT_EQ(Vec4(mesh.C.row(mesh.F(1, corner))), red);
+            EXPECT_TRUE(Vec4(mesh.C.row(mesh.F(2, corner))).isApprox(green, 1e-6f));
+        }
+        const std::vector<int> sources(mesh.source_vertex.data(), mesh.source_vertex.data() + 7);
+        EXPECT_EQ(sources, (std::vector<int>{0, 1, 1, 2, 2, 3, 4}));
+        EXPECT_EQ(Vec4(mesh.C.row(6)), Vec4(1, 1, 1, 1)) << "no face uses it";
+        EXPECT_EQ(Vec3(mesh.V.row(mesh.E(0, 0))), Vec3(0, 0, 100)) << "edges follow";
+        EXPECT_EQ(Eigen::Vector3i(mesh.L), Eigen::Vector3i(4, 5, 6));
+        EXPECT_TRUE(mesh.scalars.empty());
+    }
+}
+
+TEST(Ply, ColorsOfFacesAndTextureCoordinatesSplitVertices) {
+    const MeshData mesh = read(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+        "property float red\nproperty float green\nproperty float blue\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2 6 0 0 1 0 0 1 1 0 0\n3 1 3 2 6 1 0 1 1 0.5 0.5 0 1 0\n");
+    // Vertex 2 has two texture coordinates, vertex 1 has one and two colours.
+    ASSERT_EQ(mesh.V.rows(), 6);
+    EXPECT_EQ(Vec2(mesh.UV.row(mesh.F(0, 2))), Vec2(0, 1));
+    EXPECT_EQ(Vec2(mesh.UV.row(mesh.F(1, 2))), Vec2(0.5f, 0.5f));
+    for (int corner = 0; corner < 3; ++corner) {
+        EXPECT_EQ(Vec3(mesh.C.row(mesh.F(0, corner))), Vec3(1, 0, 0));
+        EXPECT_EQ(Vec3(mesh.C.row(mesh.F(1, corner))), Vec3(0, 1, 0));
+    }
+    const std::vector<int> sources(mesh.source_vertex.data(), mesh.source_vertex.data() + 6);
+    EXPECT_EQ(sources, (std::vector<int>{0, 1, 1, 2, 2, 3}));
+}
+
+TEST(Ply, ColorsOfVerticesWinOverThoseOfFaces) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    const MeshData mesh = read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
+        "property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n"
+        "property uchar blue\nend_header\n0 0 0 0 0 255\n1 0 0 0 0 255\n0 1 0 0 0 255\n3 0 1 2 255 0 0\n");
+    set_log_sink({});
+    EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(0, 0, 1));
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("colours of the faces are left out"), std::string::npos) << warnings[0];
+}
+
 TEST(Ply, LeavesOutPointsOfCloudsWithoutPosition) {
     std::vector<std::string> warnings;
     set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });

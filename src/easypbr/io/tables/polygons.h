@@ -55,8 +55,13 @@ inline constexpr uint64_t no_key = ~uint64_t(0);
 CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const uint64_t> keys,
                           size_t vertex_count);
 
-/// Repeats the rows of all arrays of the vertices by the sources of the new vertices, and sets source_vertex.
+/// Repeats the rows of all arrays of the vertices by the sources of the new vertices, and sets source_vertex,
+/// which goes on from the one that there is.
 void gather_vertices(const CornerSplit& split, MeshData& mesh);
+
+/// Where there are as many faces as vertices, repeats the last vertex, which no face uses then: what has a
+/// value for each face would pass for values of the vertices. Labels and scalars must be those of vertices.
+void tell_faces_from_vertices(MeshData& mesh);
 
 /// Sorts the triangles by material (stable) and fills `parts`: one for each material that is used.
 /// `material_of_polygon` has an entry for each polygon of the file.

@@ -95,6 +95,19 @@ double color_scale(ScalarType type) {
     return type == ScalarType::uint8 ? 1 / 255.0 : type == ScalarType::uint16 ? 1 / 65535.0 : 1.0;
 }
 
+/// Whether their values tell their range, not their types.
+bool plan_color_columns(const std::vector<VertexField>& fields, size_t count, ArrayXf::Dense& C) {
+    const auto color = find_spelling(fields, color_names);
+    plan_floats(fields, color, count, C);
+    bool tell = false;
+    for (const size_t i : color) {
+        const double scale = color_scale(fields[i].property.type);
+        fields[i].column->scale = scale;
+        tell |= scale == 1;
+    }
+    return tell;
+}
+
 }  // namespace
 
 VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count) {
@@ -112,23 +125,13 @@ VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count)
     plan_floats(fields, find_spelling(fields, tangent_names), count, T_);
     plan_floats(fields, find_spelling(fields, bitangent_names), count, B_);
     plan_floats(fields, find_spelling(fields, uv_names), count, UV_);
-    plan_colors(fields, count);
+    colors_tell_range_ = plan_color_columns(fields, count, C_);
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(Eigen::Index(count));
         fields[label[0]].column->integers = L_.data();
     }
     plan_floats(fields, find_spelling(fields, intensity_names), count, I_);
     plan_scalars(fields, count);
-}
-
-void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t count) {
-    const auto color = find_spelling(fields, color_names);
-    plan_floats(fields, color, count, C_);
-    for (const size_t i : color) {
-        const ScalarType type = fields[i].property.type;
-        fields[i].column->scale = color_scale(type);
-        colors_tell_range_ |= color_scale(type) == 1;
-    }
 }
 
 void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t count) {
@@ -190,12 +193,13 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         if (!plan.element->properties[i].count_type)
             fields.push_back({plan.element->properties[i], &plan.columns[i]});
     const auto rows = Eigen::Index(plan.element->count);
+    colors_tell_range_ = plan_color_columns(fields, size_t(rows), C_);
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(rows);
         fields[label[0]].column->integers = L_.data();
     }
     for (const VertexField& field : fields) {
-        if (!field.column->is_skipped() || is_known_field(field.property.name) ||
+        if (!field.column->is_skipped() || has_name(normal_names, field.property.name) ||
             field.property.name == "texnumber")
             continue;
         scalars_.emplace_back(without_prefix(field.property.name), Array1f::Dense(rows));
@@ -203,19 +207,30 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
     }
 }
 
+ArrayXf::Dense FaceArrays::take_colors() {
+    if (colors_tell_range_) {
+        normalize_colors(C_);
+        tidy_colors(C_);
+    }
+    return std::exchange(C_, {});
+}
+
 void FaceArrays::move_into(MeshData& mesh) {
-    if (mesh.F.rows() == mesh.V.rows()) return;
+    if (mesh.F.rows() == 0) return;
+    std::set<std::string> taken;
+    for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
+    std::erase_if(scalars_, [&](const auto& scalar) { return !taken.insert(scalar.first).second; });
+    const bool has_labels = mesh.L.empty() && L_.size();
+    if (!has_labels && scalars_.empty()) return;
+    tell_faces_from_vertices(mesh);
     const auto of_triangles = [&](auto& values) {
         std::remove_cvref_t<decltype(values)> result(mesh.F.rows());
         for (Eigen::Index i = 0; i < result.size(); ++i)
             result[i] = values[mesh.source_face.empty() ? i : mesh.source_face[i]];
         return result;
     };
-    if (mesh.L.empty() && L_.size()) mesh.L = of_triangles(L_);
-    std::set<std::string> taken;
-    for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
-    for (auto& [name, values] : scalars_)
-        if (taken.insert(name).second) mesh.scalars.push_back({name, of_triangles(values)});
+    if (has_labels) mesh.L = of_triangles(L_);
+    for (const auto& [name, values] : scalars_) mesh.scalars.push_back({name, of_triangles(values)});
 }
 
 bool is_known_field(std::string_view name) {

@@ -51,7 +51,6 @@ class VertexArrays {
         Array1f::Dense values;
     };
 
-    void plan_colors(const std::vector<VertexField>& fields, size_t count);
     void plan_scalars(const std::vector<VertexField>& fields, size_t count);
 
     std::optional<std::array<size_t, 3>> position_;
@@ -66,19 +65,24 @@ class VertexArrays {
     std::vector<Scalar> scalars_;
 };
 
-/// Labels and scalars of a file's faces.
+/// Colours, labels and scalars of a file's faces.
 class FaceArrays {
   public:
     FaceArrays() = default;
-    /// Makes room for what no column is there for yet: labels, and scalars of any other name but those of
-    /// normals, colours and textures.
+    /// Makes room for what no column is there for yet: colours, labels, and scalars of any other name but
+    /// those of normals.
     explicit FaceArrays(ElementPlan& plan);
 
-    /// Gives each triangle the values of its polygon; those that would pass for values of the vertices (as
-    /// many faces as vertices) or that the vertices have too are left out.
+    /// The colours of the polygons, 0 .. 1, without rows where they have none. Leaves none here.
+    ArrayXf::Dense take_colors();
+
+    /// Gives each triangle the values of its polygon; those that the vertices have too are left out. Where
+    /// they would pass for values of the vertices, a vertex is added (tell_faces_from_vertices).
     void move_into(MeshData& mesh);
 
   private:
+    ArrayXf::Dense C_;
+    bool colors_tell_range_ = false;
     Array1i::Dense L_;
     std::vector<std::pair<std::string, Array1f::Dense>> scalars_;
 };

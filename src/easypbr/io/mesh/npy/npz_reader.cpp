@@ -203,9 +203,9 @@ class NpzReader {
         return result;
     }
 
-    /// With as many triangles as points they would pass for values of the points.
     void add_face_values() {
-        if (mesh_.F.rows() == mesh_.V.rows()) return;
+        if (face_values_.empty()) return;
+        tell_faces_from_vertices(mesh_);
         for (const NamedArray* named : face_values_) {
             if (is_any_of(npz_labels, named->lower_name) && mesh_.L.empty())
                 mesh_.L = of_triangles(values_of<Integers>(*named));

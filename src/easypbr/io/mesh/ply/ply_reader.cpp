@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
@@ -31,6 +33,23 @@ std::vector<size_t> find_scalars(const Element& element, const Names& names) {
     return found;
 }
 
+constexpr float color_steps = 65535;
+
+/// Four codes of 16 bits, of which those of bytes are exact; alpha is 1 where there is none.
+uint64_t color_key(const Eigen::RowVectorXf& color) {
+    uint64_t key = 0;
+    for (Eigen::Index i = 0; i < 4; ++i)
+        key = key << 16 | uint64_t(std::lround((i < color.size() ? color[i] : 1.0f) * color_steps));
+    return key;
+}
+
+/// White for `no_key`, the key of a vertex without a face.
+Eigen::RowVector4f color_of(uint64_t key) {
+    Eigen::RowVector4f color;
+    for (Eigen::Index i = 0; i < 4; ++i) color[i] = float(key >> (48 - 16 * i) & 0xffff) / color_steps;
+    return color;
+}
+
 /// Reads one file.
 class PlyReader {
   public:
@@ -52,6 +71,7 @@ class PlyReader {
         }
         check();
         split_vertices();
+        split_by_color_of_faces();
         make_mesh();
         add_materials();
         set_front();
@@ -204,6 +224,32 @@ class PlyReader {
         mesh_.UV = std::move(UV);
         follow_split(split, {E_.data(), size_t(E_.size())});
         follow_split(split, strip_triangles_);
+    }
+
+    /// Where faces have colours, makes one vertex of each different (vertex, colour).
+    void split_by_color_of_faces() {
+        const ArrayXf::Dense C = face_values_.take_colors();
+        if (C.rows() == 0 || faces_.value_count() == 0) return;
+        if (!mesh_.C.empty() || strip_triangles_.size()) {
+            log_warning(fmt::format("{}: the colours of the faces are left out: {}", source_.path.string(),
+                                    mesh_.C.empty() ? "there are triangle strips beside them"
+                                                    : "the vertices have colours of their own"));
+            return;
+        }
+        std::vector<uint64_t> keys(faces_.value_count(), no_key);
+        parallel_for(faces_.rows, 1 << 13, [&](size_t face) {
+            std::fill_n(keys.begin() + ptrdiff_t(faces_.begin_of(face)), faces_.size_of(face),
+                        color_key(C.row(Eigen::Index(face))));
+        });
+        const auto split =
+            split_corners({faces_.values.data(), faces_.value_count()}, keys, size_t(mesh_.V.rows()));
+        gather_vertices(split, mesh_);
+        ArrayXf::Dense of_vertices(Eigen::Index(split.key.size()), C.cols());
+        parallel_for(split.key.size(), 1 << 14, [&](size_t i) {
+            of_vertices.row(Eigen::Index(i)) = color_of(split.key[i]).head(C.cols());
+        });
+        mesh_.C = std::move(of_vertices);
+        follow_split(split, {E_.data(), size_t(E_.size())});
     }
 
     void make_mesh() {
