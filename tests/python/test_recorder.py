@@ -59,6 +59,23 @@ def test_path_takes_opencv_poses_and_cameras():
     assert CameraPath(T).camera(0.3, cameras[1]).fov_y_deg == 60
 
 
+def test_path_through_calibrated_cameras_and_others():
+    K = np.array([[150, 0, 40.0], [0, 100, 30], [0, 0, 1]])
+    calibrated = Camera.from_opencv(K, np.diag([1.0, -1, -1, 1]), (320, 200))
+    plain = Camera.look_at((1, 2, 3), (0, 0, 0), fov_y_deg=20)
+    # tan(fov / 2) = 200 / 2 / 100; the pose between them gets the mean of the logarithms.
+    path = CameraPath([calibrated, poses()[1], plain])
+    assert path.camera(0).fov_y_deg == pytest.approx(90) and path.camera(2).fov_y_deg == pytest.approx(20)
+    assert np.tan(np.radians(path.camera(1).fov_y_deg / 2)) == pytest.approx(np.sqrt(np.tan(np.radians(10))))
+    alone = CameraPath([calibrated, calibrated])
+    np.testing.assert_allclose(alone.camera(0.5, calibrated).opencv_K((320, 200)), K)
+    flat = Camera.look_at((1, 2, 3), (0, 0, 0))
+    flat.projection = "orthographic"
+    with pytest.raises(ValueError, match="key 1 is orthographic and key 0 perspective"):
+        CameraPath([plain, flat])
+    assert CameraPath([plain, flat], fov_y_deg=40).camera(0.5).fov_y_deg == pytest.approx(40)
+
+
 def test_path_files(tmp_path):
     path = CameraPath(poses(), fov_y_deg=[20, 30, 40])
     path.save(tmp_path / "path.json")

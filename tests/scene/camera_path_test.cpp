@@ -187,6 +187,43 @@ TEST(CameraPath, ZoomsEvenly) {
     EXPECT_EQ(CameraPath(random_keys(2, 1)).camera(0, like).fov_y_deg, 44);
 }
 
+// tan(45 / 2) and tan(90 / 2) = 1 have the geometric mean sqrt(tan(22.5)) half way.
+TEST(CameraPath, KeysWithoutAnAngleOfViewGetOne) {
+    Keys keys = random_keys(5, 3, true);
+    keys[1].fov_y_deg = 45;
+    keys[3].fov_y_deg = 90;
+    const double middle = degrees(2 * std::atan(std::sqrt(std::tan(radians(22.5)))));
+    for (const PathMode mode : {PathMode::smooth, PathMode::linear}) {
+        const CameraPath path(keys, {mode});
+        const std::vector<double> expected{45, 45, middle, 90, 90};
+        for (size_t i = 0; i < keys.size(); ++i) {
+            EXPECT_NEAR(*path.fov_y_deg(double(i)), expected[i], 1e-9) << i;
+            EXPECT_NEAR(*path.keys()[i].fov_y_deg, expected[i], 1e-9) << i;
+        }
+    }
+}
+
+// A height of 200 pixels at a focal length of 100: tan(fov / 2) = 1.
+TEST(CameraPath, CalibratedCamerasHaveTheAngleOfTheirMatrix) {
+    Mat3d K;
+    K << 150, 0, 40, 0, 100, 30, 0, 0, 1;
+    const Camera calibrated = Camera::from_opencv(K, Mat4d::Identity(), 320, 200);
+    Camera plain = Camera::look_at(Vec3d(0, 0, 5), Vec3d::Zero());
+    plain.fov_y_deg = 20;
+    const CameraPath mixed({CameraKey::at(calibrated), CameraKey::at(plain)});
+    EXPECT_NEAR(*mixed.fov_y_deg(0), 90, 1e-9);
+    EXPECT_NEAR(*mixed.fov_y_deg(1), 20, 1e-9);
+    // Alone they leave the camera its own.
+    const CameraPath alone({CameraKey::at(calibrated), CameraKey::at(calibrated), CameraKey()});
+    EXPECT_FALSE(alone.fov_y_deg(0.5).has_value());
+    EXPECT_TRUE(alone.camera(0.5, calibrated).opencv_K(320, 200).isApprox(K, 1e-12));
+    Camera flat = plain;
+    flat.projection = Projection::orthographic;
+    EXPECT_THROW(CameraPath({CameraKey::at(flat), CameraKey::at(plain)}), ArgumentError);
+    EXPECT_THROW(CameraPath({CameraKey::at(flat), CameraKey::at(calibrated)}), ArgumentError);
+    EXPECT_FALSE(CameraPath({CameraKey::at(flat), CameraKey::at(flat)}).fov_y_deg(0).has_value());
+}
+
 TEST(CameraPath, OrbitsKeepTheDistanceAndTheView) {
     const Vec3d center(1, 2, 3);
     const Camera start = Camera::look_at(Vec3d(4, 3, 7), center);
@@ -240,9 +277,11 @@ TEST(CameraPath, RefusesWhatIsNoPath) {
     EXPECT_NE(error_of(keys).find("key 2: camera pose: expected a rotation"), std::string::npos)
         << error_of(keys);
     keys = Keys(3);
-    keys[0].fov_y_deg = 30;
-    EXPECT_EQ(error_of(keys),
-              "camera path: expected an angle of view for every key or for none, got 1 for 3 keys");
+    keys[2].fov_y_deg = 30;
+    keys[1].is_orthographic = true;
+    EXPECT_NE(error_of(keys).find("key 1 is orthographic and key 2 perspective"), std::string::npos);
+    keys[2].fov_y_deg.reset();
+    EXPECT_EQ(error_of(keys), "no error");
     keys[0].fov_y_deg = 180;
     EXPECT_NE(error_of(keys).find("between 0 and 180"), std::string::npos);
     EXPECT_THROW(CameraPath(Keys(2)).pose(std::numeric_limits<double>::quiet_NaN()), ArgumentError);

@@ -22,7 +22,12 @@ enum class PathEase { none, in, out, in_out };
 struct CameraKey {
     Eigen::Isometry3d T_world_cam = Eigen::Isometry3d::Identity();  ///< OpenGL's axes
     double segment_s = 1;  ///< seconds to the next key; of the last key: to the first of a closed path
-    std::optional<double> fov_y_deg;  ///< full vertical angle; none: the path leaves the camera its own
+    std::optional<double> fov_y_deg;  ///< full vertical angle; see CameraPath for keys without one
+    bool is_calibrated = false;       ///< fov_y_deg is that of a camera with a K of its own
+    bool is_orthographic = false;     ///< of a camera without an angle of view
+
+    /// The pose and the angle of view of a camera.
+    static CameraKey at(const Camera& camera, double segment_s = 1);
 };
 
 struct CameraPathOptions {
@@ -34,12 +39,15 @@ struct CameraPathOptions {
 /// Positions of the smooth mode are a cubic spline. Its rotations are a cubic spline of unit quaternions with
 /// matching signs, brought to unit length: C2 wherever it does not vanish, which is checked, and the same
 /// motion however the world is moved or turned, for a rotation of the world is linear in quaternions. Angles
-/// of view are interpolated as logarithms of the picture's half height, which makes zooming even.
+/// of view are interpolated as logarithms of the picture's half height, which makes zooming even. A key
+/// without one gets what lies between those of its neighbours by time, or that of the nearest key that has
+/// one. Where no key has one, or all those with one are of calibrated cameras, the path leaves the camera its
+/// own.
 class CameraPath {
   public:
     /// Throws ArgumentError for less than two keys, a pose that is no rotation and translation (1e-4), a
-    /// time between keys that is not above 0, an angle of view outside (0, 180), angles for some keys only,
-    /// and rotations that times very unlike each other make tumble.
+    /// time between keys that is not above 0, an angle of view outside (0, 180), orthographic keys beside
+    /// others with an angle of view, and rotations that times very unlike each other make tumble.
     explicit CameraPath(std::vector<CameraKey> keys, const CameraPathOptions& options = {});
 
     /// A circle around the line through `center` along `axis`, at constant speed but for `ease`, from the
@@ -58,7 +66,7 @@ class CameraPath {
     double duration_s() const { return duration_s_; }
     bool is_closed() const { return options_.closed; }
     const CameraPathOptions& options() const { return options_; }
-    /// Empty for an orbit.
+    /// With the angles of view that they got; empty for an orbit.
     const std::vector<CameraKey>& keys() const { return keys_; }
     const std::optional<Orbit>& circle() const { return orbit_; }
 

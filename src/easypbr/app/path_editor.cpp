@@ -9,16 +9,6 @@
 #include "easypbr/core/error.h"
 
 namespace easypbr::app {
-namespace {
-
-CameraKey key_of(const Camera& camera, double segment_s) {
-    CameraKey key{camera.T_world_cam, segment_s, {}};
-    if (camera.projection == Projection::perspective && !camera.intrinsics) key.fov_y_deg = camera.fov_y_deg;
-    return key;
-}
-
-}  // namespace
-
 void PathEditor::require(size_t key) const {
     if (key >= keys_.size())
         throw NameError(fmt::format("camera path: no key {}, there are {}", key, keys_.size()));
@@ -49,13 +39,13 @@ void PathEditor::set_options(const CameraPathOptions& options) {
 void PathEditor::insert(size_t at, const Camera& camera) {
     if (at != keys_.size()) require(at);
     const double segment = at > 0 ? keys_[at - 1].segment_s : 1;
-    keys_.insert(keys_.begin() + std::ptrdiff_t(at), key_of(camera, segment));
+    keys_.insert(keys_.begin() + std::ptrdiff_t(at), CameraKey::at(camera, segment));
     rebuild();
 }
 
 void PathEditor::replace(size_t key, const Camera& camera) {
     require(key);
-    keys_[key] = key_of(camera, keys_[key].segment_s);
+    keys_[key] = CameraKey::at(camera, keys_[key].segment_s);
     rebuild();
 }
 

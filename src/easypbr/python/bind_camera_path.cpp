@@ -27,14 +27,8 @@ const std::vector<std::string> mode_names{"smooth", "linear"}, ease_names{"none"
 enum class Axes { opengl, opencv };
 
 CameraKey key_of(nb::handle object, Axes axes) {
+    if (nb::isinstance<Camera>(object)) return CameraKey::at(nb::cast<const Camera&>(object));
     CameraKey key;
-    if (nb::isinstance<Camera>(object)) {
-        const Camera& camera = nb::cast<const Camera&>(object);
-        key.T_world_cam = camera.T_world_cam;
-        if (camera.projection == Projection::perspective && !camera.intrinsics)
-            key.fov_y_deg = camera.fov_y_deg;
-        return key;
-    }
     Mat4d T = to_matrix4(object, "camera path: key");
     if (axes == Axes::opencv) T.block<3, 2>(0, 1) *= -1;
     key.T_world_cam.matrix() = T;
@@ -64,7 +58,10 @@ void construct_camera_path(CameraPath* self, const nb::object& keys, const nb::o
     for (size_t i = 0; i < segments; ++i) list[i].segment_s = times[i];
     if (!fov_y_deg.is_none()) {
         const std::vector<double> angles = numbers_for(fov_y_deg, list.size(), "fov_y_deg");
-        for (size_t i = 0; i < list.size(); ++i) list[i].fov_y_deg = angles[i];
+        for (size_t i = 0; i < list.size(); ++i) {
+            list[i].fov_y_deg = angles[i];
+            list[i].is_calibrated = list[i].is_orthographic = false;
+        }
     }
     const CameraPathOptions options{choice_named<PathMode>("mode", mode, mode_names),
                                     choice_named<PathEase>("ease", ease, ease_names), closed};
@@ -88,7 +85,9 @@ void bind_camera_path_makers(nb::class_<CameraPath>& path) {
                  "collections.abc.Iterable[float] | None = None, mode: str = 'smooth', ease: str = 'none', "
                  "closed: bool = False, axes: str = 'opengl') -> None"),
              "Path through cameras or 4 x 4 poses T_world_cam with OpenGL or OpenCV axes. segment_s: seconds "
-             "between keys, one number or one per segment. mode: 'smooth' (continuous velocity and "
+             "between keys, one number or one per segment. fov_y_deg: of each key; by default that of its "
+             "camera, "
+             "or what lies between those of its neighbours. mode: 'smooth' (continuous velocity and "
              "acceleration) or 'linear'. ease: 'none', 'in', 'out' or 'in_out'. closed: returns to the first "
              "key and repeats.")
         .def_static(

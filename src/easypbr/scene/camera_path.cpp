@@ -75,6 +75,51 @@ void check_key(CameraKey& key, size_t index, bool is_last, const CameraPathOptio
                         key.segment_s));
 }
 
+/// Logarithm of half the picture's height at distance 1.
+double zoom_of(double fov_y_deg) {
+    return std::log(std::tan(radians(fov_y_deg) / 2));
+}
+
+double angle_of_zoom(double zoom) {
+    return degrees(2 * std::atan(std::exp(zoom)));
+}
+
+/// Between an orthographic key and one with an angle of view there is no projection.
+void require_one_projection(const std::vector<CameraKey>& keys) {
+    const auto flat = std::ranges::find(keys, true, &CameraKey::is_orthographic);
+    const auto other =
+        std::ranges::find_if(keys, [](const CameraKey& key) { return key.fov_y_deg.has_value(); });
+    if (flat != keys.end() && other != keys.end())
+        throw ArgumentError(fmt::format(
+            "camera path: key {} is orthographic and key {} perspective: there is nothing between "
+            "them; expected keys of one projection, or poses",
+            flat - keys.begin(), other - keys.begin()));
+}
+
+/// Gives keys without an angle of view one, or takes all angles away. `times`: of the keys.
+void complete_angles(std::vector<CameraKey>& keys, const std::vector<double>& times) {
+    std::vector<size_t> known;
+    bool keeps_own = true;
+    for (size_t i = 0; i < keys.size(); ++i) {
+        if (!keys[i].fov_y_deg) continue;
+        known.push_back(i);
+        keeps_own &= keys[i].is_calibrated;
+    }
+    for (size_t i = 0; i < keys.size(); ++i) {
+        if (keeps_own) {
+            keys[i].fov_y_deg.reset();
+        } else if (!keys[i].fov_y_deg) {
+            const auto next = std::ranges::lower_bound(known, i);
+            const size_t after = next == known.end() ? known.back() : *next,
+                         before = next == known.begin() ? after : *(next - 1);
+            const double part =
+                before == after ? 0 : (times[i] - times[before]) / (times[after] - times[before]);
+            keys[i].fov_y_deg = angle_of_zoom((1 - part) * zoom_of(*keys[before].fov_y_deg) +
+                                              part * zoom_of(*keys[after].fov_y_deg));
+        }
+    }
+}
+
 /// Rotations with the knots that long turns need between the keys.
 struct RotationKnots {
     std::vector<double> times;
@@ -131,6 +176,19 @@ void require_no_tumbling(const CubicSpline& rotations, const std::vector<double>
 
 }  // namespace
 
+CameraKey CameraKey::at(const Camera& camera, double segment_s) {
+    CameraKey key;
+    key.T_world_cam = camera.T_world_cam;
+    key.segment_s = segment_s;
+    key.is_orthographic = camera.projection == Projection::orthographic;
+    if (key.is_orthographic) return key;
+    key.is_calibrated = camera.intrinsics.has_value();
+    key.fov_y_deg = key.is_calibrated
+                        ? degrees(2 * std::atan(camera.intrinsics->height / (2 * camera.intrinsics->fy)))
+                        : camera.fov_y_deg;
+    return key;
+}
+
 struct CameraPath::Splines {
     CubicSpline positions, rotations, zooms;
 };
@@ -139,17 +197,13 @@ CameraPath::CameraPath(std::vector<CameraKey> keys, const CameraPathOptions& opt
     : keys_(std::move(keys)), options_(options), times_{0} {
     if (keys_.size() < 2)
         throw ArgumentError(fmt::format("camera path: expected at least two keys, got {}", keys_.size()));
-    size_t with_angle = 0;
     for (size_t i = 0; i < keys_.size(); ++i) {
         const bool is_last = i + 1 == keys_.size();
         check_key(keys_[i], i, is_last, options_);
         if (!is_last || options_.closed) times_.push_back(times_.back() + keys_[i].segment_s);
-        with_angle += keys_[i].fov_y_deg.has_value();
     }
-    if (with_angle != 0 && with_angle != keys_.size())
-        throw ArgumentError(fmt::format(
-            "camera path: expected an angle of view for every key or for none, got {} for {} keys",
-            with_angle, keys_.size()));
+    require_one_projection(keys_);
+    complete_angles(keys_, times_);
     duration_s_ = times_.back();
     build_splines();
 }
@@ -161,7 +215,7 @@ void CameraPath::build_splines() {
     for (Eigen::Index i = 0; i < count; ++i) {
         const CameraKey& key = keys_[size_t(i)];
         positions.row(i) = key.T_world_cam.translation();
-        zooms(i, 0) = std::log(std::tan(radians(key.fov_y_deg.value_or(30)) / 2));
+        zooms(i, 0) = zoom_of(key.fov_y_deg.value_or(30));
     }
     if (options_.mode == PathMode::linear) return;
     RotationKnots knots = rotation_knots(keys_, times_, options_.closed);
@@ -239,15 +293,12 @@ Eigen::Isometry3d CameraPath::pose(double time_s) const {
 std::optional<double> CameraPath::fov_y_deg(double time_s) const {
     if (keys_.empty() || !keys_.front().fov_y_deg) return {};
     const double time = eased(time_s);
-    if (options_.mode == PathMode::smooth)
-        return degrees(2 * std::atan(std::exp(splines_->zooms.at(time)[0])));
+    if (options_.mode == PathMode::smooth) return angle_of_zoom(splines_->zooms.at(time)[0]);
     const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
     const size_t i = size_t(after - times_.begin() - 1);
     const double part = (time - times_[i]) / (times_[i + 1] - times_[i]);
-    const auto zoom = [&](size_t key) {
-        return std::log(std::tan(radians(*keys_[key % keys_.size()].fov_y_deg) / 2));
-    };
-    return degrees(2 * std::atan(std::exp((1 - part) * zoom(i) + part * zoom(i + 1))));
+    const auto zoom = [&](size_t key) { return zoom_of(*keys_[key % keys_.size()].fov_y_deg); };
+    return angle_of_zoom((1 - part) * zoom(i) + part * zoom(i + 1));
 }
 
 Camera CameraPath::camera(double time_s, Camera like) const {
