@@ -61,7 +61,8 @@ class Recorder:
         self._handle.add_frame(picture)
 
     def stop(self) -> int:
-        """Waits until all frames are written and finishes the file; returns their number."""
+        """Waits until all frames are written and finishes the file; returns their number. A recording without frames leaves no
+        file and is a warning."""
         _started.discard(self)
         return self._handle.stop_recording()
 

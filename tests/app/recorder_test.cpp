@@ -9,6 +9,7 @@
 #include "easypbr/app/recording_target.h"
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
@@ -177,6 +178,26 @@ TEST_F(Recordings, TheClockMakesStepsOfAFrame) {
     EXPECT_FALSE(clock_.fixed_step());
     EXPECT_TRUE(fs::exists(folder_ / "a/frame_00002.png"));
     EXPECT_THROW(recorder_.add_frame(), ArgumentError);
+}
+
+TEST_F(Recordings, WithoutFramesLeaveNoFile) {
+    fs::create_directory(folder_ / "old");
+    write_file(folder_ / "old/notes.txt", std::string_view("kept"));
+    for (const char* name : {"a.mp4", "a.mov", "a.mkv", "a.webm", "a.gif", "a_%d.png", "new/", "old/"}) {
+        std::vector<std::string> warnings;
+        recorder_.start(folder_ / name);
+        set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+        EXPECT_EQ(recorder_.stop(), 0) << name;
+        set_log_sink({});
+        ASSERT_EQ(warnings.size(), 1u) << name;
+        EXPECT_NE(warnings[0].find("no frame was added"), std::string::npos) << warnings[0];
+    }
+    std::vector<std::string> left;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path()))
+        left.push_back(entry.path().filename().string());
+    std::ranges::sort(left);
+    EXPECT_EQ(left, (std::vector<std::string>{"notes.txt", "old"}));
+    EXPECT_FALSE(clock_.fixed_step());
 }
 
 TEST_F(Recordings, AreFinishedByTheRecordersEndAndByExceptions) {

@@ -102,6 +102,15 @@ def test_what_is_no_path(keys, values, message):
         CameraPath(keys, **values)
 
 
+@pytest.mark.parametrize("name", ["a.mp4", "a.webm", "a.gif", "a_%d.png", "folder/"])
+def test_a_recording_without_frames_leaves_no_file(name, tmp_path, caplog):
+    view = Viewer((32, 24), scene=Scene())
+    view.recorder.start(f"{tmp_path}/{name}", fps=5)
+    assert view.recorder.stop() == 0
+    assert list(tmp_path.iterdir()) == []
+    assert "no frame was added" in caplog.text
+
+
 def test_path_as_a_shape():
     orbit = CameraPath.orbit(Camera.look_at((0, 0, 5), (0, 0, 0)), axis=(0, 1, 0))
     mesh = shapes.camera_path(orbit)

@@ -64,7 +64,8 @@ class Recorder {
     void watch(Watcher watcher);
 
     /// Waits until all frames are written and finishes the file. Returns how many there are; 0 when nothing
-    /// was being recorded. Throws what writing threw.
+    /// was being recorded. A recording without frames leaves no file and is a warning. Throws what writing
+    /// threw.
     int stop();
 
     /// Called before a frame is drawn with its number, how many there are, and its time on the path.

@@ -141,7 +141,10 @@ int Recorder::stop() {
     if (!recording_) return 0;
     const std::unique_ptr<Recording> recording = end();
     recording->finish();
-    return recording->queue->count();
+    const int count = recording->queue->count();
+    if (count == 0)
+        log_warning(fmt::format("{}: no frame was added, so nothing was recorded", recording->path.string()));
+    return count;
 }
 
 int Recorder::record_path(const CameraPath& path, const fs::path& file, const RecordingOptions& options,

@@ -55,12 +55,18 @@ std::string known_kinds() {
 /// Files appear in order, so that a recording that is killed has no gaps.
 class PictureFrames final : public FrameWriter {
   public:
-    explicit PictureFrames(fs::path path) : path_(std::move(path)) {}
+    /// `made`: the folder was made for them.
+    PictureFrames(fs::path path, bool made) : path_(std::move(path)), made_(made) {}
     void write(int index, const Image& picture) override {
         const Turn turn{*this, index};
         const std::vector<std::byte> bytes = io::encode_image(picture, extension_of(path_));
         turn.wait();
         write_file(frame_path(path_, index), bytes);
+    }
+    void finish() override {
+        std::error_code ignored;
+        // A folder that something else was put into stays.
+        if (made_ && next_ == 0) fs::remove(path_.parent_path(), ignored);
     }
     int threads() const override { return std::clamp(thread_count(), 1, 8); }
 
@@ -83,6 +89,7 @@ class PictureFrames final : public FrameWriter {
     };
 
     fs::path path_;
+    bool made_;
     std::mutex mutex_;
     std::condition_variable changed_;
     int next_ = 0;
@@ -164,10 +171,10 @@ std::unique_ptr<FrameWriter> make_frame_writer(const fs::path& path, const Vec2i
     const fs::path pattern = numbered(path);
     std::error_code failed;
     const fs::path folder = pattern.parent_path();
-    if (!folder.empty()) fs::create_directory(folder, failed);
+    const bool made = !folder.empty() && fs::create_directory(folder, failed);
     if (failed)
         throw FileError(fmt::format("cannot make the folder {}: {}", folder.string(), failed.message()));
-    return std::make_unique<PictureFrames>(pattern);
+    return std::make_unique<PictureFrames>(pattern, made);
 }
 
 }  // namespace easypbr::app

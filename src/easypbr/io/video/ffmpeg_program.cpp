@@ -172,6 +172,7 @@ class ProgramVideo final : public VideoWriter {
 
     void add(const Image& picture) override {
         check_video_picture(path_, size_, picture);
+        is_empty_ = false;
         whole_or_none([&] {
             for (int y = 0; y < padded_.y(); ++y)
                 send_row(picture.at<uint8_t>(0, std::min(y, size_.y() - 1)));
@@ -181,6 +182,7 @@ class ProgramVideo final : public VideoWriter {
     void finish() override {
         if (finished_) return;
         finished_ = true;
+        if (is_empty_) return remove();
         whole_or_none([&] { require_end(); });
     }
 
@@ -192,11 +194,15 @@ class ProgramVideo final : public VideoWriter {
             write();
         } catch (...) {
             finished_ = true;
-            child_.reset();
-            std::error_code ignored;
-            if (fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
+            remove();
             throw;
         }
+    }
+
+    void remove() {
+        child_.reset();
+        std::error_code ignored;
+        if (fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
     }
 
     /// The last pixel is sent twice where the sides are padded.
@@ -235,7 +241,7 @@ class ProgramVideo final : public VideoWriter {
     SharedMemory errors_;
     Descriptor feed_;
     std::optional<ChildProcess> child_;
-    bool finished_ = false;
+    bool is_empty_ = true, finished_ = false;
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ class VideoWriter {
     virtual void add(const Image& picture) = 0;
     /// Writes what is still in the encoder and closes the file; add() may not follow. Throws FileError. A
     /// writer that is destroyed before is finished as far as it can be. A file that cannot be written to its
-    /// end is removed, by add() too.
+    /// end, or has no picture, is removed, by add() too.
     virtual void finish() = 0;
 };
 

@@ -109,6 +109,7 @@ class FfmpegVideo final : public VideoWriter {
     void finish() override {
         if (finished_) return;
         finished_ = true;
+        if (next_ == 0) return remove();
         whole_or_none([&] {
             encode(nullptr);
             require_written(av_write_trailer(output_.get()), path_);
@@ -131,11 +132,15 @@ class FfmpegVideo final : public VideoWriter {
             write();
         } catch (...) {
             finished_ = true;
-            output_.reset();
-            std::error_code ignored;
-            if (is_opened_ && fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
+            remove();
             throw;
         }
+    }
+
+    void remove() {
+        output_.reset();
+        std::error_code ignored;
+        if (is_opened_ && fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
     }
 
     bool is_fragmented() const {
