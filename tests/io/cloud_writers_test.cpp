@@ -113,6 +113,42 @@ TEST(CloudFiles, FormatsOfPointsSayThatFacesAreLeftOut) {
     EXPECT_NE(warnings[0].find("2 faces"), std::string::npos) << warnings[0];
 }
 
+TEST(CloudFiles, WhatAFormatHasNoPlaceForIsNamed) {
+    const TemporaryFolder folder;
+    MeshData mesh = cloud(10);
+    mesh.C = ArrayXf::Dense::Constant(10, 4, 0.5f);
+    mesh.scalars = {{"heat", Array1f::Dense::Zero(10)}, {"area", Array1f::Dense::Zero(2)}};
+    mesh.F = Array3i::Dense::Zero(2, 3);
+    const auto warnings_of = [&](const char* name) {
+        std::string warnings;
+        set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+        Mesh(mesh).save(folder / name);
+        set_log_sink({});
+        return warnings;
+    };
+    const std::string obj = warnings_of("m.obj");
+    for (const char* name : {"alpha", "tangents", "labels", "intensities", "'heat'", "'area'"})
+        EXPECT_NE(obj.find(name), std::string::npos) << name << " in " << obj;
+    EXPECT_NE(warnings_of("m.csv").find("scalars 'area' of faces"), std::string::npos);
+    EXPECT_EQ(warnings_of("m.csv").find("heat"), std::string::npos);
+    EXPECT_EQ(warnings_of("m.ply"), "");
+    EXPECT_EQ(warnings_of("m.npz"), "");
+}
+
+TEST(CloudFiles, ObjKeepsTheNormalsOfACloud) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense(Array3f::Dense::Random(10, 3));
+    Array3f::Dense N = Array3f::Dense::Random(10, 3);
+    N.rowwise().normalize();
+    mesh.N = std::move(N);
+    mesh.UV = Array2f::Dense(Array2f::Dense::Random(10, 2));
+    Mesh(mesh).save(folder / "c.obj");
+    const auto back = Mesh(folder / "c.obj").snapshot();
+    EXPECT_EQ(Array3f::Dense(back->N), Array3f::Dense(mesh.N));
+    EXPECT_EQ(Array2f::Dense(back->UV), Array2f::Dense(mesh.UV));
+}
+
 TEST(CloudFiles, ChildrenAreMerged) {
     const TemporaryFolder folder;
     Mesh root = Mesh(cloud(10)), child = Mesh(cloud(5));

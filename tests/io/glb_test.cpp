@@ -6,6 +6,7 @@
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/mesh.h"
+#include "io/gltf_decoded.h"
 #include "io/temporary_folder.h"
 #include "test_data.h"
 
@@ -47,6 +48,46 @@ MeshData first_child(const Mesh& mesh) {
 }
 
 }  // namespace
+
+TEST(Glb, RoundTripsValuesOfVertices) {
+    MeshData data = square();
+    Array1i::Dense L(4);
+    L << -1, 0, 70000, 1 << 24;
+    Array1f::Dense I(4), heat(4);
+    I << 0.5f, 1, 0, 1e6f;
+    heat << -1.5f, 0.1f, 3e-20f, 7;
+    data.L = L, data.I = I;
+    data.scalars = {{"heat of \"it\"", heat}};
+    const LogCapture log;
+    const MeshData read = first_child(round_trip(Mesh(data)).mesh);
+    EXPECT_EQ(read.L, data.L);
+    EXPECT_EQ(read.I, data.I);
+    ASSERT_EQ(read.scalars.size(), 1u);
+    EXPECT_EQ(read.scalars[0].name, "heat of \"it\"");
+    EXPECT_EQ(read.scalars[0].values, data.scalars[0].values);
+    EXPECT_EQ(log.text, "");
+    // Points and lines have them too.
+    data.F = {};
+    const MeshData points = first_child(round_trip(Mesh(data)).mesh);
+    EXPECT_EQ(points.L, data.L);
+    EXPECT_EQ(points.scalars.at(0).values, data.scalars[0].values);
+}
+
+TEST(Glb, SaysWhatItLeavesOut) {
+    MeshData data = square();
+    data.L = Array1i::Dense::Constant(2, 5);
+    data.scalars = {{"area", Array1f::Dense::Constant(2, 5)}, {"heat", Array1f::Dense::Constant(4, NAN)}};
+    data.T = Array3f::Dense::Constant(4, 3, 1);
+    const TemporaryFolder folder;
+    const LogCapture log;
+    Mesh(data).save(folder / "a.glb");
+    for (const char* name : {"tangents", "labels of faces", "scalars 'area' of faces",
+                             "scalars 'heat' with missing values", "of 'square'", "a.glb"})
+        EXPECT_NE(log.text.find(name), std::string::npos) << name << " in " << log.text;
+    const MeshData read = first_child(io::load_gltf(folder / "a.glb").mesh);
+    EXPECT_TRUE(read.L.empty());
+    EXPECT_TRUE(read.scalars.empty());
+}
 
 TEST(Glb, RoundTripsGeometry) {
     MeshData data = square();

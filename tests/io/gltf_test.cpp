@@ -137,6 +137,36 @@ TEST(Gltf, ReadsInterleavedQuantisedAndSparseData) {
     EXPECT_EQ(Vec3(mesh.N.row(2)), Vec3(0, 0, 1));
 }
 
+TEST(Gltf, AttributesOfOtherProgramsBecomeScalars) {
+    GltfBuilder builder;
+    nlohmann::json& primitive = builder.triangle();
+    const size_t ids = builder.accessor(std::vector<uint16_t>{3, 4, 5, 0}, 5123, "SCALAR", 3);
+    const size_t wind = builder.floats({1, 2, 3, 4, 5, 6}, 2);
+    const size_t label = builder.floats({0.5f, 1, 2}, 1);
+    const size_t matrix = builder.accessor(std::vector<float>(27, 1.0f), 5126, "MAT3", 3);
+    primitive["attributes"]["_BATCHID"] = ids;
+    primitive["attributes"]["_wind"] = wind;
+    primitive["attributes"]["_LABEL"] = label;
+    primitive["attributes"]["_matrix"] = matrix;
+    primitive["attributes"]["_short"] = builder.floats({1, 2}, 1);
+    const LogCapture log;
+    primitive["attributes"]["TANGENT"] = builder.floats(std::vector<float>(12, 1.0f), 4);
+    // A second primitive without them.
+    nlohmann::json second = primitive;
+    second["attributes"] = {{"POSITION", primitive["attributes"]["POSITION"]}};
+    builder.json["meshes"][0]["primitives"].push_back(second);
+    const MeshData mesh = *decode(builder).mesh.snapshot()->children.at(0).snapshot();
+    ASSERT_EQ(mesh.V.rows(), 6);
+    ASSERT_EQ(mesh.scalars.size(), 4u);
+    EXPECT_EQ(scalar_named(mesh, "BATCHID").values[2], 5);
+    EXPECT_TRUE(std::isnan(scalar_named(mesh, "BATCHID").values[3]));
+    EXPECT_EQ(scalar_named(mesh, "wind_1").values[1], 4);
+    EXPECT_EQ(scalar_named(mesh, "LABEL").values[0], 0.5f) << "no whole numbers are no labels";
+    EXPECT_TRUE(mesh.L.empty());
+    for (const ScalarArray& scalar : mesh.scalars) EXPECT_TRUE(scalar.from_file) << scalar.name;
+    EXPECT_NE(log.text.find("attribute _short is left out"), std::string::npos) << log.text;
+}
+
 TEST(Gltf, VertexColoursBecomeSrgb) {
     GltfBuilder builder;
     nlohmann::json& primitive = builder.triangle();

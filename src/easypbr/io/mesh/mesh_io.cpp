@@ -15,6 +15,7 @@
 #include "easypbr/io/mesh/content_format.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/scene/merge.h"
 
@@ -120,11 +121,48 @@ void warn_of_splats(const Mesh& mesh, const fs::path& path) {
     });
 }
 
+std::vector<std::string> labels_and_scalars(const MeshData& mesh, bool of_faces_only) {
+    std::vector<std::string> names;
+    const auto is_left_out = [&](Eigen::Index rows) {
+        return rows > 0 && (!of_faces_only || element_of(mesh, rows) == PerElement::face);
+    };
+    const char* const of = of_faces_only ? " of faces" : "";
+    if (is_left_out(mesh.L.rows())) names.push_back(fmt::format("labels{}", of));
+    for (const ScalarArray& scalar : mesh.scalars)
+        if (is_left_out(scalar.values.rows()))
+            names.push_back(fmt::format("scalars '{}'{}", scalar.name, of));
+    return names;
+}
+
+/// What of a mesh has no place in a format, beside faces and splats: names for a message.
+std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension) {
+    if (extension == "glb") return left_out_of_gltf(mesh);
+    if (extension == "ply" || extension == "npz") return {};
+    if (extension != "obj" && extension != "spz") return labels_and_scalars(mesh, true);
+    std::vector<std::string> names;
+    if (extension == "spz" && !mesh.N.empty()) names.emplace_back("normals");
+    if (extension == "spz" && !mesh.C.empty()) names.emplace_back("colours beside those of splats");
+    if (extension == "spz" && !mesh.UV.empty()) names.emplace_back("texture coordinates");
+    if (extension == "obj" && has_transparent_colors(mesh.C)) names.emplace_back("the alpha of colours");
+    if (!mesh.T.empty() || !mesh.B.empty()) names.emplace_back("tangents");
+    if (!mesh.I.empty()) names.emplace_back("intensities");
+    std::ranges::move(labels_and_scalars(mesh, false), std::back_inserter(names));
+    return names;
+}
+
+void warn_of_left_out(const MeshData& mesh, const fs::path& path, const std::string& extension) {
+    const std::vector<std::string> names = left_out(mesh, extension);
+    if (!names.empty())
+        log_warning(fmt::format("{}: the format has no place for {}: left out{}", path.string(),
+                                fmt::join(names, ", "),
+                                mesh.name.empty() ? "" : fmt::format(" of '{}'", mesh.name)));
+}
+
 std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
     if (extension == "ply") return encode_ply(mesh, fs::absolute(path).parent_path());
     if (extension == "npz") return encode_npz(mesh);
-    if (extension == "spz") return encode_spz(mesh);
     warn_of_faces(mesh, path);
+    if (extension == "spz") return encode_spz(mesh);
     if (extension == "pcd") return encode_pcd(mesh);
     if (extension == "npy") return encode_npy(mesh);
     return encode_xyz(mesh, extension == "csv" ? ',' : ' ');
@@ -132,8 +170,9 @@ std::string encode(const MeshData& mesh, const fs::path& path, const std::string
 
 void save_obj(const Mesh& mesh, const fs::path& path) {
     const fs::path library = fs::path(path).replace_extension(".mtl");
-    const ObjText text =
-        encode_obj(flatten(mesh), library.filename().string(), fs::absolute(path).parent_path());
+    const MeshData flat = flatten(mesh);
+    warn_of_left_out(flat, path, "obj");
+    const ObjText text = encode_obj(flat, library.filename().string(), fs::absolute(path).parent_path());
     FileSet files;
     if (!text.mtl.empty()) files.add(library, text.mtl);
     files.add(path, text.obj);
@@ -194,9 +233,16 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
         fail_extension(path, extension, "written", writable_extensions);
     check_writable(path);
     if (!contains(splat_extensions, extension)) warn_of_splats(mesh, path);
-    if (extension == "glb") return save_glb(mesh, path);
+    if (extension == "glb") {
+        for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+            warn_of_left_out(*data, path, extension);
+        });
+        return save_glb(mesh, path);
+    }
     if (extension == "obj") return save_obj(mesh, path);
-    write_file(path, encode(flatten(mesh), path, extension));
+    const MeshData flat = flatten(mesh);
+    warn_of_left_out(flat, path, extension);
+    write_file(path, encode(flat, path, extension));
 }
 
 std::vector<std::string> native_extensions() {

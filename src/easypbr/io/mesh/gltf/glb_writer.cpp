@@ -9,6 +9,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/gltf/glb_textures.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
+#include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
@@ -161,6 +162,8 @@ class GlbBuilder {
                 for (int c = 0; c < 3; ++c) C(i, c) = linear_from_srgb(C(i, c));
             attributes["COLOR_0"] = add_floats(C.data(), size_t(C.rows()), int(C.cols()));
         }
+        for (const auto& [name, values] : values_for_gltf(data))
+            attributes[name] = add_floats(values.data(), size_t(values.rows()), 1);
         return attributes;
     }
 

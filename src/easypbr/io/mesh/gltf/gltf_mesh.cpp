@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
@@ -14,6 +15,7 @@
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
 #include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
+#include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
 
@@ -29,6 +31,7 @@ struct VertexBlock {
     Eigen::Index first = 0;
     ArrayXf::Dense V, N, UV, C, joints, weights;
     std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
+    GltfValues values;                                 ///< without rows where there are none
     std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
 };
 
@@ -94,6 +97,10 @@ class MeshBuilder {
         const Json* primitives = member(json, "primitives");
         if (!primitives || !primitives->is_array() || primitives->empty()) fail("has no primitives");
         out_.name = document_.text(json, "name");
+        for (const Json& primitive : *primitives)
+            if (const Json* attributes = member(primitive, "attributes");
+                attributes && attributes->is_object())
+                if (!has_gltf_splats(primitive)) find_gltf_values(document_, *attributes, value_names_);
         for (const Json& primitive : *primitives) add(primitive);
         if (blocks_.empty() && splats_.size() == 1) {
             splats_[0].name = out_.name;
@@ -139,6 +146,8 @@ class MeshBuilder {
         for (const char* name :
              {"POSITION", "NORMAL", uv, "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1", "WEIGHTS_1"})
             key.push_back(document_.optional_integer(attributes, name));
+        for (const std::string& name : value_names_)
+            key.push_back(document_.optional_integer(attributes, name.c_str()));
         if (const Json* targets = member(primitive, "targets"); targets && targets->is_array())
             for (const Json& target : *targets)
                 for (const char* name : {"POSITION", "NORMAL"})
@@ -171,7 +180,18 @@ class MeshBuilder {
             append_columns(block.joints, joints);
             append_columns(block.weights, weights);
         }
-        for (size_t target = 8; target + 2 < key.size(); target += 2) {
+        size_t next = 8;
+        for (const std::string& name : value_names_) {
+            ArrayXf::Dense& values = block.values[name];
+            try {
+                read(key[next++], 1, 4, values);
+            } catch (const FormatError& error) {
+                // The mesh is whole without it.
+                values = {};
+                log_warning(fmt::format("attribute {} is left out: {}", name, error.what()));
+            }
+        }
+        for (size_t target = next; target + 2 < key.size(); target += 2) {
             read(key[target], 3, 3, block.targets_V.emplace_back());
             read(key[target + 1], 3, 3, block.targets_N.emplace_back());
         }
@@ -305,6 +325,14 @@ class MeshBuilder {
         if (ArrayXf::Dense N = merged(&VertexBlock::N, 0); N.rows()) out_.N = Array3f(N);
         if (ArrayXf::Dense UV = merged(&VertexBlock::UV, 0); UV.rows()) out_.UV = Array2f(UV);
         if (ArrayXf::Dense C = merged(&VertexBlock::C, 1); C.rows()) out_.C = ArrayXf(std::move(C));
+        for (const std::string& name : value_names_) {
+            const float missing = name == gltf_label_name       ? -1.0f
+                                  : name == gltf_intensity_name ? 0.0f
+                                                                : std::numeric_limits<float>::quiet_NaN();
+            const ArrayXf::Dense values = merged_of(
+                missing, [&](VertexBlock& block) -> ArrayXf::Dense& { return block.values.at(name); });
+            if (values.rows()) add_gltf_values(name, values, out_);
+        }
     }
 
     GltfDocument& document_;
@@ -315,6 +343,7 @@ class MeshBuilder {
     std::vector<VertexBlock> blocks_;
     std::vector<MeshData> splats_;  ///< of the primitives that are such
     ArrayXf::Dense none_;           ///< what a block has of a morph target that it lacks
+    std::set<std::string> value_names_;
     std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;
     std::vector<std::optional<size_t>> sources_;  ///< of out_.materials

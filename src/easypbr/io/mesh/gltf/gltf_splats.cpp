@@ -8,6 +8,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
+#include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/tables/splat_rows.h"
 #include "easypbr/scene/splat_basis.h"
@@ -55,6 +56,10 @@ class SplatPrimitiveReader {
             data.splats.sh = std::move(sh);
         }
         data.up = Vec3d::Zero();
+        std::set<std::string> names;
+        find_gltf_values(document_, attributes_, names);
+        for (const std::string& name : names)
+            if (count_ > 0) add_gltf_values(name, require(name, 1, 4), data);
         return data;
     }
 
@@ -102,10 +107,12 @@ class SplatPrimitiveReader {
         return degree;
     }
 
-    ArrayXf::Dense require(const std::string& name, int columns) {
+    ArrayXf::Dense require(const std::string& name, int columns) { return require(name, columns, columns); }
+
+    ArrayXf::Dense require(const std::string& name, int least, int most) {
         const auto accessor = document_.optional_integer(attributes_, name.c_str());
         if (!accessor) fail("has splats without " + name);
-        ArrayXf::Dense values = read_floats(document_, *accessor, columns, columns);
+        ArrayXf::Dense values = read_floats(document_, *accessor, least, most);
         if (count_ && values.rows() != count_)
             fail(fmt::format("has {} splats, but accessors[{}] has {} rows", count_, *accessor,
                              values.rows()));

@@ -262,6 +262,7 @@ class ObjReader {
         mesh_.V = std::move(V_);
         mesh_.offset = offset_;
         if (C_.size()) mesh_.C = std::move(C_);
+        if (faces_.rows == 0) return attach_to_points();
         if (attribute_[obj_uv].empty() && attribute_[obj_normal].empty()) return;
         CornerSplit split;
         if (indices_agree()) {
@@ -277,6 +278,13 @@ class ObjReader {
         take_rows(
             split.key.size(), [&](size_t i) { return int64_t(int32_t(split.key[i] >> 32)); },
             [&](size_t i) { return int64_t(int32_t(split.key[i])); });
+    }
+
+    /// Of a cloud that has one of each for every point, in the same order.
+    void attach_to_points() {
+        const Eigen::Index count = mesh_.V.rows();
+        if (normals_.rows() == count) N_ = std::move(normals_);
+        if (uv_.rows() == count) mesh_.UV = std::move(uv_);
     }
 
     /// Whether every corner has one index for all that it has.
