@@ -123,6 +123,24 @@ TEST(GroundTruth, TruncationAndTheBoxOutside) {
     EXPECT_EQ(left.pixels_amodal_inside, 3200);
 }
 
+// Beside the picture by more than the canvas is large, on each side: an object that is alone covers nothing.
+TEST(GroundTruth, FarOutsideOfThePictureIsAnEmptyBox) {
+    for (const Vec3d& by : {Vec3d(0, 30, 0), Vec3d(0, -30, 0), Vec3d(30, 0, 0), Vec3d(-30, 30, 0)}) {
+        Scene scene;
+        scene.show(facing_square(1), "middle");
+        scene.show(moved(facing_square(1), by), "outside");
+        app::Session session = plain_session(scene, 100);
+        look_from(session, Vec3d(0, 0, 5));
+        const GroundTruth truth = ground_truth(session, {}, with_instances({100, 100}));
+        const Instance& outside = named(truth, "outside");
+        EXPECT_EQ(outside.pixels_amodal, 0);
+        EXPECT_EQ(outside.box_amodal.width, 0);
+        EXPECT_EQ(outside.box_amodal.height, 0);
+        EXPECT_EQ(outside.visible_fraction, 0);
+        EXPECT_EQ(named(truth, "middle").visible_fraction, 1);
+    }
+}
+
 /// Meshes above and below the size from which triangles are rasterised natively, a cloud, surfels and voxels.
 Scene every_kind() {
     Scene scene;

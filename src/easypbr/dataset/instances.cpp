@@ -38,7 +38,7 @@ void extend(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh,
 }
 
 PixelBox box_of(int x0, int y0, int x1, int y1) {
-    return x1 < x0 ? PixelBox{} : PixelBox{x0, y0, x1 - x0 + 1, y1 - y0 + 1};
+    return x1 < x0 || y1 < y0 ? PixelBox{} : PixelBox{x0, y0, x1 - x0 + 1, y1 - y0 + 1};
 }
 
 /// Least and largest pixels so far.
