@@ -54,7 +54,9 @@ struct Instance {
 
     Eigen::Affine3d T_world_obj = Eigen::Affine3d::Identity();
     Eigen::Affine3d T_cam_obj = Eigen::Affine3d::Identity();  ///< OpenCV's camera axes
-    Box3d box;                                                ///< of all vertices, in the object's frame
+    /// In the object's frame, of all vertices: points and surfels are not counted as large as they are drawn,
+    /// voxels with their whole cubes.
+    Box3d box;
     /// Corners of the box: bit 0 of the row is x, bit 1 y, bit 2 z (0: least).
     Eigen::Matrix<double, 8, 3> corners_world, corners_cam;
     Eigen::Matrix<double, 8, 2> corners_px;  ///< NaN behind the camera
@@ -83,7 +85,8 @@ struct LayerArray {
 ///   instance_id         i32, Instance::id
 ///   semantic_id         i32: label of the face or vertex that is seen if the mesh has labels (of the nearest
 ///                       corner, where they belong to vertices), else the instance's
-///   object_coordinates  f32 x 3, NOCS: (p - centre) / diagonal + 0.5 of the instance's box, in its frame
+///   object_coordinates  f32 x 3, NOCS: (p - centre) / diagonal + 0.5 of the instance's box, in its frame; of
+///                       what is no face and reaches beyond the box, the nearest place in it
 ///   face_id             i32, index in the user's F of the face that is seen; in V of points and surfels, of
 ///                       vertices on top of faces and of the first vertex in a voxel; -1 of nothing
 ///   barycentrics        f32 x 3, weights of the face's corners; 0 on what is no face

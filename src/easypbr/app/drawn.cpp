@@ -96,6 +96,12 @@ std::vector<uint8_t> Drawn::coverage(const render::PixelRect& area,
     return renderer.coverage(area, wanted);
 }
 
+std::vector<render::ScreenReach> Drawn::reaches() const {
+    render::Renderer& renderer = surface_renderer();
+    const gl::ContextScope scope(*device_->context);
+    return renderer.reaches();
+}
+
 const render::GBuffer& Drawn::targets() const {
     return surface_renderer().uploaded_targets();
 }

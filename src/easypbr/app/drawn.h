@@ -89,6 +89,8 @@ class Drawn {
     /// See render::Renderer::coverage().
     std::vector<uint8_t> coverage(const render::PixelRect& area,
                                   const std::function<bool(size_t object, int first_face)>& wanted) const;
+    /// See render::Renderer::reaches().
+    std::vector<render::ScreenReach> reaches() const;
     /// What layer() reads.
     const render::GBuffer& targets() const;
 

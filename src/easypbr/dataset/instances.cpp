@@ -21,7 +21,8 @@ std::string root_of(const std::string& node, const std::vector<std::string>& sho
     return root.empty() ? node : root;
 }
 
-void extend(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh, const MeshPart* part) {
+void extend_by_vertices(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh,
+                        const MeshPart* part) {
     const bool moved = !T_obj_mesh.matrix().isIdentity(1e-12);
     const auto add = [&](Eigen::Index v) {
         const Vec3d p = Vec3(mesh.V.row(v)).cast<double>();
@@ -35,6 +36,30 @@ void extend(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh,
     else if (!mesh.V.empty())
         box.extend(Box3d(Vec3d(mesh.V.colwise().minCoeff().transpose().cast<double>()),
                          Vec3d(mesh.V.colwise().maxCoeff().transpose().cast<double>())));
+}
+
+/// By the cells that hold vertices, each of which is drawn as a cube (see voxel_mesh()).
+void extend_by_voxels(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh, double size) {
+    if (mesh.V.empty()) return;
+    const Vec3d origin = mesh.V.row(0).transpose().cast<double>();
+    const auto centre_of = [&](const Vec3d& p) {
+        return Vec3d(origin + size * ((p - origin) / size)
+                                         .array()
+                                         .unaryExpr([](double cell) { return std::floor(cell + 0.5); })
+                                         .matrix());
+    };
+    if (T_obj_mesh.matrix().isIdentity(1e-12)) {
+        const Vec3d low = mesh.V.colwise().minCoeff().transpose().cast<double>(),
+                    high = mesh.V.colwise().maxCoeff().transpose().cast<double>();
+        const Vec3d half = Vec3d::Constant(size / 2);
+        box.extend(Box3d(Vec3d(centre_of(low) - half), Vec3d(centre_of(high) + half)));
+        return;
+    }
+    const Vec3d half = T_obj_mesh.linear().cwiseAbs().rowwise().sum() * (size / 2);
+    for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
+        const Vec3d centre = T_obj_mesh * centre_of(mesh.V.row(v).transpose().cast<double>());
+        box.extend(Box3d(Vec3d(centre - half), Vec3d(centre + half)));
+    }
 }
 
 PixelBox box_of(int x0, int y0, int x1, int y1) {
@@ -55,6 +80,12 @@ struct Extent {
 
 bool overlap(const PixelBox& a, const PixelBox& b) {
     return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+PixelBox united(const PixelBox& a, const PixelBox& b) {
+    if (a.width == 0 || b.width == 0) return a.width == 0 ? b : a;
+    return box_of(std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x + a.width, b.x + b.width) - 1,
+                  std::max(a.y + a.height, b.y + b.height) - 1);
 }
 
 bool contains(Vec2i size, const PixelBox& box) {
@@ -91,25 +122,35 @@ void count_visible(std::vector<Instance>& instances, const Surfaces& s, const In
 }
 
 /// Pixels of the drawn picture that an instance may cover if it is alone, at most three times the picture.
-/// Splats reach beyond the vertices, by less than a quarter of the object.
-PixelBox reach_of(const Instance& instance, const app::LensMap& lens, const Camera& drawn, bool splats) {
+/// `beyond`: how far its primitives reach beyond the box.
+PixelBox reach_of(const Instance& instance, const app::LensMap& lens, const Camera& drawn,
+                  const render::ScreenReach& beyond) {
     const Vec2i size = lens.drawn_size;
-    Vec2d low = Vec2d::Constant(1e30), high = -low;
     if (instance.box.isEmpty()) return {};
-    bool all_before = true;
-    for (int i = 0; i < 8; ++i) {
-        const Vec3d p = instance.corners_cam.row(i);
-        all_before &= p.z() > drawn.near;
-        if (!all_before) break;
-        const Vec2d pixel = project(drawn, size, p);
-        low = low.cwiseMin(pixel);
-        high = high.cwiseMax(pixel);
-    }
-    if (!all_before && (instance.corners_cam.col(2).array() <= drawn.near).all()) return {};
-    const Vec2d margin = splats ? Vec2d((high - low) / 4 + Vec2d(16, 16)) : Vec2d(2, 2);
+    const double nearest = instance.corners_cam.col(2).minCoeff() - beyond.world;
+    if (instance.corners_cam.col(2).maxCoeff() + beyond.world <= drawn.near) return {};
     const Vec2d least = -size.cast<double>(), most = 2.0 * size.cast<double>() - Vec2d(1, 1);
-    low = all_before ? Vec2d((low - margin).cwiseMax(least)) : least;
-    high = all_before ? Vec2d((high + margin).cwiseMin(most)) : most;
+    Vec2d low = least, high = most;
+    if (nearest > drawn.near) {
+        Vec2d corner_low = Vec2d::Constant(1e30), corner_high = -corner_low;
+        double steepest = 0;
+        for (int i = 0; i < 8; ++i) {
+            const Vec3d p = instance.corners_cam.row(i);
+            const Vec2d pixel = project(drawn, size, p);
+            corner_low = corner_low.cwiseMin(pixel);
+            corner_high = corner_high.cwiseMax(pixel);
+            steepest = std::max(steepest, p.head<2>().norm() / p.z());
+        }
+        double pixels_per_unit = size.y() / drawn.ortho_height;
+        if (drawn.projection == Projection::perspective) {
+            // A step of length 1 along the ray and across moves a point by this at the least depth.
+            const Mat3d K = drawn.opencv_K(size.x(), size.y());
+            pixels_per_unit = std::max(K(0, 0), K(1, 1)) * (1 + steepest) / nearest;
+        }
+        const Vec2d margin = Vec2d::Constant(2 + beyond.pixels + beyond.world * pixels_per_unit);
+        low = (corner_low - margin).cwiseMax(least);
+        high = (corner_high + margin).cwiseMin(most);
+    }
     return box_of(int(std::floor(low.x())), int(std::floor(low.y())), int(std::ceil(high.x())),
                   int(std::ceil(high.y())));
 }
@@ -189,21 +230,51 @@ void count_warped(Instance& instance, const PixelBox& area, const std::vector<ui
         inside ? int(std::lround(double(instance.pixels_amodal_inside) * all / inside)) : all;
 }
 
+/// The instance's amodal bitmap, box and pixels: what it covers if it is alone.
+void count_alone(Instance& instance, const PixelBox& area, const app::Drawn& drawn, const Surfaces& s,
+                 const InstanceTable& table, size_t place) {
+    const auto alone = drawn.coverage(area, [&](size_t object, int first_face) {
+        const auto& parts = s.scene.objects[object].mesh->parts;
+        size_t part = 0;
+        while (part + 1 < parts.size() && parts[part].first_face != first_face) ++part;
+        return table.of(object, part) == place;
+    });
+    if (!drawn.lens().is_identity()) return count_warped(instance, area, alone, drawn.lens(), s);
+    instance.amodal = inside_picture(area, alone, s.size);
+    count_amodal(instance, area, alone, s.size);
+}
+
+/// The same bitmap of a larger rectangle, where it does not hold `box`.
+void hold(Bitmap& bitmap, const PixelBox& box) {
+    const PixelBox from = bitmap.area;
+    if (box.x >= from.x && box.y >= from.y && box.x + box.width <= from.x + from.width &&
+        box.y + box.height <= from.y + from.height)
+        return;
+    const PixelBox area = united(from, box);
+    std::vector<uint8_t> pixels(size_t(area.width) * size_t(area.height));
+    for (int y = 0; y < from.height; ++y)
+        std::copy_n(bitmap.pixels.begin() + long(y) * from.width, from.width,
+                    pixels.begin() + long(from.y + y - area.y) * area.width + (from.x - area.x));
+    bitmap = {area, std::move(pixels)};
+}
+
 /// A pixel that is seen is covered, whatever the rounding of two projections says.
 void add_visible(Instance& instance, const Surfaces& s, const InstanceTable& table, size_t place) {
     const PixelBox& seen = instance.box_visible;
+    if (seen.width == 0) return;
     Bitmap& bitmap = instance.amodal;
+    hold(bitmap, seen);
     for (int y = seen.y; y < seen.y + seen.height; ++y)
         for (int x = seen.x; x < seen.x + seen.width; ++x) {
             const size_t i = size_t(y) * size_t(s.size.x()) + size_t(x);
             if (!s.covered(i) || table.of(s.object[i] - 1, s.part[i]) != place) continue;
             const int u = x - bitmap.area.x, v = y - bitmap.area.y;
-            if (u < 0 || v < 0 || u >= bitmap.area.width || v >= bitmap.area.height) continue;
             uint8_t& pixel = bitmap.pixels[size_t(v) * size_t(bitmap.area.width) + size_t(u)];
             instance.pixels_amodal += !pixel;
             instance.pixels_amodal_inside += !pixel;
             pixel = 1;
         }
+    instance.box_amodal = united(instance.box_amodal, seen);
 }
 
 Bitmap visible_bitmap(const Instance& instance, const Surfaces& s, const InstanceTable& table, size_t place) {
@@ -270,13 +341,29 @@ InstanceTable::InstanceTable(const SceneSnapshot& scene, const std::vector<std::
                 name += fmt::format(":{}", parts[p].name.empty() ? std::to_string(p) : parts[p].name);
             if (in_parts && places.contains(name)) name += fmt::format("#{}", p);
             const size_t place = place_of(name, root, object.T_world_mesh);
-            Instance& instance = instances_[place];
-            extend(instance.box, instance.T_world_obj.inverse() * object.T_world_mesh, *object.mesh,
-                   in_parts ? &parts[p] : nullptr);
+            extend(place, object, in_parts ? &parts[p] : nullptr, 0);
             row.push_back(place);
         }
         table_.push_back(std::move(row));
     }
+}
+
+InstanceTable::InstanceTable(const Surfaces& s, const std::vector<std::string>& shown, InstancesBy by,
+                             const std::map<std::string, int>& classes)
+    : InstanceTable(s.scene, shown, by, classes) {
+    for (size_t o = 0; o < s.scene.objects.size(); ++o)
+        if (s.voxel_sizes[o] > 0 || (by == InstancesBy::part && !s.only_faces[o]))
+            extend(of(o, 0), s.scene.objects[o], nullptr, s.voxel_sizes[o]);
+}
+
+void InstanceTable::extend(size_t place, const SceneSnapshot::Object& object, const MeshPart* part,
+                           double voxel_size) {
+    Instance& instance = instances_[place];
+    const Eigen::Affine3d T_obj_mesh = instance.T_world_obj.inverse() * object.T_world_mesh;
+    if (voxel_size > 0)
+        extend_by_voxels(instance.box, T_obj_mesh, *object.mesh, voxel_size);
+    else
+        extend_by_vertices(instance.box, T_obj_mesh, *object.mesh, part);
 }
 
 std::vector<Instance> annotate(const app::Drawn& drawn, const Surfaces& s, const InstanceTable& table,
@@ -290,30 +377,19 @@ std::vector<Instance> annotate(const app::Drawn& drawn, const Surfaces& s, const
     }
     const app::LensMap& lens = drawn.lens();
     const Camera camera = lens.is_identity() ? s.camera : lens.drawn;
-    std::vector<bool> splats(instances.size());
-    for (size_t o = 0; o < s.scene.objects.size(); ++o)
-        if (!s.only_faces[o]) splats[table.of(o, 0)] = true;
+    std::vector<render::ScreenReach> beyond(instances.size());
+    const std::vector<render::ScreenReach> of_objects = drawn.reaches();
+    for (size_t o = 0; o < of_objects.size(); ++o) beyond[table.of(o, 0)].extend(of_objects[o]);
     std::vector<PixelBox> reaches;
     for (size_t k = 0; k < instances.size(); ++k)
-        reaches.push_back(reach_of(instances[k], lens, camera, splats[k]));
+        reaches.push_back(reach_of(instances[k], lens, camera, beyond[k]));
     for (size_t k = 0; k < instances.size(); ++k) {
         Instance& instance = instances[k];
         const PixelBox& area = reaches[k];
         if (!amodal || seen_whole(reaches, k, lens)) {
             take_visible(instance);
-        } else if (area.width > 0) {
-            const auto alone = drawn.coverage(area, [&](size_t object, int first_face) {
-                const auto& parts = s.scene.objects[object].mesh->parts;
-                size_t part = 0;
-                while (part + 1 < parts.size() && parts[part].first_face != first_face) ++part;
-                return table.of(object, part) == k;
-            });
-            if (lens.is_identity()) {
-                instance.amodal = inside_picture(area, alone, s.size);
-                count_amodal(instance, area, alone, s.size);
-            } else {
-                count_warped(instance, area, alone, lens, s);
-            }
+        } else {
+            if (area.width > 0) count_alone(instance, area, drawn, s, table, k);
             add_visible(instance, s, table, k);
         }
         if (instance.pixels_amodal == 0) continue;

@@ -18,6 +18,9 @@ class InstanceTable {
     /// to their instances.
     InstanceTable(const SceneSnapshot& scene, const std::vector<std::string>& shown, InstancesBy by,
                   const std::map<std::string, int>& classes);
+    /// Of what has been drawn: boxes hold voxels, and that of the first part all that is drawn of vertices.
+    InstanceTable(const Surfaces& surfaces, const std::vector<std::string>& shown, InstancesBy by,
+                  const std::map<std::string, int>& classes);
 
     /// Place in instances(); of an object's place in the snapshot and the part.
     size_t of(size_t object, size_t part) const {
@@ -33,6 +36,8 @@ class InstanceTable {
     const std::vector<Instance>& instances() const { return instances_; }
 
   private:
+    void extend(size_t place, const SceneSnapshot::Object& object, const MeshPart* part, double voxel_size);
+
     std::vector<std::vector<size_t>> table_;  ///< for each object, for each part
     std::vector<Instance> instances_;
 };

@@ -69,6 +69,7 @@ Vec2 uv(const Surfaces& s, size_t i) {
 
 LayerArray object_coordinates(const Surfaces& s, const InstanceTable& table) {
     std::vector<Eigen::Affine3d> T_obj_cv;
+    std::vector<Box3d> boxes;  // of the coordinates
     const Eigen::Affine3d T_world_cv(s.camera.opencv_T_world_cam());
     for (const Instance& instance : table.instances()) {
         const double diagonal = instance.box.isEmpty() ? 0 : instance.box.diagonal().norm();
@@ -76,10 +77,16 @@ LayerArray object_coordinates(const Surfaces& s, const InstanceTable& table) {
         const Vec3d centre = instance.box.isEmpty() ? Vec3d(Vec3d::Zero()) : Vec3d(instance.box.center());
         to_unit.translate(Vec3d::Constant(0.5)).scale(diagonal > 0 ? 1 / diagonal : 1).translate(-centre);
         T_obj_cv.push_back(to_unit * instance.T_world_obj.inverse() * T_world_cv);
+        const Vec3d half = instance.box.isEmpty() ? Vec3d(Vec3d::Zero())
+                                                  : Vec3d((to_unit * instance.box.max()).array() - 0.5);
+        boxes.emplace_back(Vec3d(Vec3d::Constant(0.5) - half), Vec3d(Vec3d::Constant(0.5) + half));
     }
     return vectors<3>(s, [&](size_t i) {
         const size_t place = table.of(s.object[i] - 1, s.part[i]);
-        return Vec3((T_obj_cv[place] * s.position[i].cast<double>()).cast<float>());
+        Vec3d p = T_obj_cv[place] * s.position[i].cast<double>();
+        // Points and surfels reach beyond the box of their positions.
+        if (!s.on_face(i)) p = p.cwiseMax(boxes[place].min()).cwiseMin(boxes[place].max());
+        return Vec3(p.cast<float>());
     });
 }
 

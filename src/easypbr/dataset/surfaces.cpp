@@ -120,6 +120,7 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
     s.slopes = slopes_of(camera, s.size, lens);
     s.scene = std::move(frame.scene);
     s.only_faces = std::move(frame.only_faces);
+    s.voxel_sizes = std::move(frame.voxel_sizes);
     const size_t count = s.slopes.size();
     s.object.resize(count);
     s.element.resize(count);

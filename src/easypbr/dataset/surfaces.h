@@ -13,7 +13,8 @@ struct Surfaces {
     Vec2i size{0, 0};
     Camera camera;                 ///< of the picture, with its distortion
     SceneSnapshot scene;           ///< with the objects' own data
-    std::vector<bool> only_faces;  ///< as in render::SurfaceFrame, like the next four
+    std::vector<bool> only_faces;  ///< as in render::SurfaceFrame, like the next five
+    std::vector<double> voxel_sizes;
     std::vector<uint32_t> object, element, part;
     std::vector<uint8_t> is_face;
     std::vector<Vec3> position;      ///< in the camera's frame, OpenCV's axes; z is 0 where there is nothing

@@ -194,7 +194,7 @@ void bind_space(InstanceClass& instance) {
                     (i.box.isEmpty() ? Vec3d(Vec3d::Zero()) : Vec3d(i.box.center())).transpose());
             },
             nb::sig("def box3d_center(self) -> numpy.ndarray"),
-            "Centre of the box of all vertices, in object space.")
+            "Centre of the box of all vertices (of voxels: of their cubes), in object space.")
         .def_prop_ro(
             "box3d_size",
             [](const Instance& i) {

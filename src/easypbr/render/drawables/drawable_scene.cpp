@@ -237,7 +237,7 @@ void DrawableCache::apply(SceneSnapshot::Object& object, const InferredSettings&
             entry.sources = of_voxels(mesh);
             return mesh;
         });
-        sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points)};
+        sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points), size};
     }
 }
 

@@ -31,6 +31,7 @@ struct ColorMeaning {
 struct ElementSources {
     Array1i faces;   ///< for each face its face, or, of voxels, the first vertex in the voxel
     Array1i points;  ///< for each vertex its vertex; where a cut made one, that with the largest part in it
+    double voxel_size = 0;  ///< edge of the voxels that were made of the vertices; 0: none were
 
     /// What the element target holds (see GBuffer::element), as 1 + index in the object's own data.
     uint32_t own(uint32_t drawn) const {

@@ -69,6 +69,7 @@ SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) co
         as_mesh.push_back(style.mode == DrawMode::mesh);
         frame.only_faces.push_back(style.mode == DrawMode::mesh && !style.show_points);
     }
+    for (const ElementSources& source : drawable_.sources) frame.voxel_sizes.push_back(source.voxel_size);
     const float near = float(frame.camera.near), far = float(frame.camera.far);
     const bool orthographic = frame.camera.projection == Projection::orthographic;
     parallel_for(frame.depth.size(), 1 << 14, [&](size_t i) {
@@ -95,8 +96,22 @@ std::vector<uint8_t> KeptSurfaces::coverage(Pipeline& pipeline, const PixelRect&
     Frame frame = make_frame(shot(), 0, resolved_.camera, Box3d(), true);
     frame.clip_from_view = crop(area, frame.size) * frame.clip_from_view;
     frame.size = {area.width, area.height};
+    frame.origin = {area.x, area.y};
     frame.covered = frame.whole();
     return pipeline.surfaces().coverage(frame, list);
+}
+
+std::vector<ScreenReach> KeptSurfaces::reaches(Pipeline& pipeline) const {
+    const Frame frame = make_frame(shot(), 0, resolved_.camera, Box3d(), true);
+    std::vector<ScreenReach> reaches =
+        pipeline.surfaces().reaches(frame, list_, drawable_.scene.objects.size());
+    // Cells are counted from the first vertex that a cut has left: they may be others than those of all.
+    const ClipSettings& clip = resolved_.settings.clip;
+    if (clip.planes.empty() && clip.box.empty()) return reaches;
+    for (size_t i = 0; i < reaches.size(); ++i)
+        reaches[i].world +=
+            drawable_.sources[i].voxel_size * drawable_.scene.objects[i].T_world_mesh.linear().norm();
+    return reaches;
 }
 
 }  // namespace easypbr::render

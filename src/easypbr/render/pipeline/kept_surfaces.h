@@ -26,6 +26,9 @@ class KeptSurfaces {
     std::vector<uint8_t> coverage(Pipeline& pipeline, const PixelRect& area,
                                   const std::function<bool(size_t object, int first_face)>& wanted) const;
 
+    /// See Renderer::reaches().
+    std::vector<ScreenReach> reaches(Pipeline& pipeline) const;
+
     const std::vector<ElementSources>& sources() const { return drawable_.sources; }
 
   private:

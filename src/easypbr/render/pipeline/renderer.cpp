@@ -382,4 +382,9 @@ std::vector<uint8_t> Renderer::coverage(const PixelRect& area,
     return kept_->coverage(pipeline_, area, wanted);
 }
 
+std::vector<ScreenReach> Renderer::reaches() {
+    if (!kept_) throw ArgumentError("reaches: the last picture was drawn without surfaces");
+    return kept_->reaches(pipeline_);
+}
+
 }  // namespace easypbr::render

@@ -103,6 +103,10 @@ class Renderer {
     std::vector<uint8_t> coverage(const PixelRect& area,
                                   const std::function<bool(size_t object, int first_face)>& wanted);
 
+    /// How far beyond its vertices each object of the snapshot may reach in the last picture, which was drawn
+    /// with `surfaces`; of voxels beyond the cells of its vertices.
+    std::vector<ScreenReach> reaches();
+
     /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
     /// the two.
     void allow_native_geometry(bool allow) { pipeline_.allow_native_geometry(allow); }

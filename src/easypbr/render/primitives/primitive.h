@@ -1,6 +1,7 @@
 // A kind of primitive: all that the frame, shadows, layers, rays and tiles need to know of it.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -42,6 +43,17 @@ struct OverlayStep {
     const GBuffer* next = nullptr;  ///< the layer; none: all that is left
     /// Reversed depths at which kinds that do not lie around others are, 0: nowhere; empty: nowhere at all.
     std::span<const float> others = {};
+};
+
+/// How far primitives may reach beyond their vertices in a picture, at most: a length in the world, and
+/// pixels beyond that. Lengths count as heights of the picture do, along rows too.
+struct ScreenReach {
+    double world = 0, pixels = 0;
+
+    void extend(const ScreenReach& other) {
+        world = std::max(world, other.world);
+        pixels = std::max(pixels, other.pixels);
+    }
 };
 
 /// One kind of primitive; a folder of its own, and a line in primitives.cpp. Its items are surfaces, or
@@ -132,6 +144,8 @@ class Primitive {
 
     /// How far an item reaches beyond its vertices, in world units.
     virtual double reach(const DrawItem&) { return 0; }
+    /// How far an item reaches beyond its vertices in the picture of a frame.
+    virtual ScreenReach screen_reach(const Frame&, const DrawItem&) { return {}; }
     /// How far primitives of a style reach beyond their own pixel, in pixels: for tiles of large pictures.
     virtual int reach_in_pixels(const DrawStyle&) const { return 0; }
 

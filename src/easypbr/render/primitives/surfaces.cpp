@@ -150,6 +150,18 @@ std::vector<uint8_t> Surfaces::coverage(const Frame& frame, const DrawList& list
     return covered;
 }
 
+std::vector<ScreenReach> Surfaces::reaches(const Frame& frame, const DrawList& list, size_t objects) const {
+    std::vector<ScreenReach> reaches(objects);
+    for (const Group& group : groups_of(list))
+        for (const DrawItem& item : group.items)
+            reaches[size_t(item.object - frame.scene->objects.data())].extend(
+                group.kind->screen_reach(frame, item));
+    // Holes between points are filled by one pixel at a time.
+    if (!list.of(DrawMode::points).empty())
+        for (ScreenReach& reach : reaches) reach.pixels += frame.resolved->settings.points.hole_filling;
+    return reaches;
+}
+
 bool Surfaces::has_native_layers(const DrawList& list) const {
     return is_native() && std::ranges::all_of(groups_of(list), [](const Group& group) {
                return group.kind->has_native_layers(group.items);

@@ -33,6 +33,9 @@ class Surfaces {
     /// Which pixels of a small frame the list covers: 1 or 0, row by row.
     std::vector<uint8_t> coverage(const Frame& frame, const DrawList& list);
 
+    /// How far beyond its vertices each of so many objects reaches, that are those of the frame's scene.
+    std::vector<ScreenReach> reaches(const Frame& frame, const DrawList& list, size_t objects) const;
+
     // Layers, see Primitive.
     void begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque);
     void draw_layer(const Frame& frame, const DrawList& list, const GBuffer& layer,

@@ -5,6 +5,7 @@
 
 #include "easypbr/render/primitives/points/point_splats.h"
 #include "easypbr/render/primitives/points/point_surface.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
@@ -40,7 +41,8 @@ bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet
 
 bool PointPrimitive::cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) {
     const auto has_holes = [](const DrawItem& item) { return is_blended(item) || item.material.shader; };
-    if (std::ranges::any_of(items, has_holes)) return false;
+    if (std::ranges::any_of(items, has_holes) || frame.resolved->settings.points.hole_filling > 0)
+        return false;
     VisibleSurfaces surfaces;
     surfaces.clear(frame.size, frame.whole());
     if (!rasterise(frame, items, 0, surfaces)) return false;
@@ -53,6 +55,14 @@ ShadowShape PointPrimitive::shadow_shape(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     return {{mesh.V.revision(), mesh.N.revision(), uint64_t(item.style.point_shape), uint64_t(item.kind)},
             {shadows_.radius(item), 1}};
+}
+
+ScreenReach PointPrimitive::screen_reach(const Frame& frame, const DrawItem& item) {
+    const PointSplats splats =
+        splats_of(item, frame, item.style.point_size ? 0 : spacings_.get(item.mesh().V));
+    const double pixels_per_unit = frame.clip_from_view(1, 1) * frame.size.y() / 2;
+    return {double(splats.world_pixels) / pixels_per_unit / 2,
+            double(std::max(splats.pixels, splats.least_pixels)) / 2};
 }
 
 int PointPrimitive::reach_in_pixels(const DrawStyle& style) const {

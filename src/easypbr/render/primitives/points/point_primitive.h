@@ -37,6 +37,7 @@ class PointPrimitive final : public Primitive {
         geometry.add_discs(item, shadows_.radius(item));
     }
     double reach(const DrawItem& item) override { return shadows_.radius(item); }
+    ScreenReach screen_reach(const Frame& frame, const DrawItem& item) override;
     int reach_in_pixels(const DrawStyle& style) const override;
     void evict_unused() override {
         buffers_.evict_unused();

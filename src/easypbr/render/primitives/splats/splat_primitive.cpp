@@ -1,8 +1,11 @@
 #include "easypbr/render/primitives/splats/splat_primitive.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -259,6 +262,17 @@ SplatSet::Finish SplatPrimitive::own_colors(const Frame& frame, const std::vecto
             splat.blue = color.z();
         }
     };
+}
+
+ScreenReach SplatPrimitive::screen_reach(const Frame&, const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    const double longest = longest_.get(mesh.splats.scales.revision(), [&] {
+        return mesh.splats.scales.empty() ? 0.0 : double(mesh.splats.scales.maxCoeff());
+    });
+    // Where the opacity of an opaque splat has fallen to the least that is seen.
+    const double deviations = std::sqrt(-2 * std::log(double(least_splat_alpha)));
+    // A square pixel is more than the variance that all are widened by.
+    return {deviations * longest * item.object->T_world_mesh.linear().operatorNorm(), deviations};
 }
 
 void SplatPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {

@@ -40,7 +40,9 @@ class SplatPrimitive final : public Primitive {
     std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item) override;
     void set_place_light(const PlaceLight* light) override { light_.set(light); }
     double reach(const DrawItem& item) override { return shadows_.reach(item); }
+    ScreenReach screen_reach(const Frame& frame, const DrawItem& item) override;
     void evict_unused() override {
+        longest_.evict_unused();
         shadows_.evict_unused();
         driver_.evict_unused();
     }
@@ -79,6 +81,7 @@ class SplatPrimitive final : public Primitive {
     bool is_split_ = false;               ///< in some pixel others lie between splats of the step
     Target picture_;                      ///< RGBA16F: what is uploaded
     SplatShadows shadows_;
+    RevisionCache<uint64_t, double> longest_;  ///< of all axes, by the revision of the scales
     SplatLight light_;
     ProgramVariants programs_{"screen_triangle.vert", "overlay_splats.frag"};
 };

@@ -1,5 +1,7 @@
 #include "easypbr/render/primitives/surfels/surfel_primitive.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
 #include <numbers>
 
@@ -35,6 +37,12 @@ ShadowShape SurfelPrimitive::shadow_shape(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     return {{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision()},
             {shadows_.reach(item), item.style.surfel_scale}};
+}
+
+ScreenReach SurfelPrimitive::screen_reach(const Frame&, const DrawItem& item) {
+    // A pose that shears stretches what lies aslant by more than its longest column, by less than sqrt(3).
+    const Mat3d linear = item.object->T_world_mesh.linear();
+    return {shadows_.reach(item) * linear.operatorNorm() / linear.colwise().norm().maxCoeff(), 1};
 }
 
 void SurfelPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {

@@ -51,6 +51,7 @@ class SurfelPrimitive final : public Primitive {
     }
     void add_to(RayGeometry& geometry, const DrawItem& item) override;
     double reach(const DrawItem& item) override { return shadows_.reach(item); }
+    ScreenReach screen_reach(const Frame& frame, const DrawItem& item) override;
     void evict_unused() override {
         buffers_.evict_unused();
         batches_.evict_unused();
