@@ -92,7 +92,9 @@ struct LayerArray {
 ///   barycentrics        f32 x 3, weights of the face's corners; 0 on what is no face
 ///   uv                  f32 x 2
 ///   flow_forward        f32 x 2, from the pixel to where its point is in the next frame, pixels
-///   occlusion_forward   u8, 1 where that point is not seen in the next frame
+///   occlusion_forward   u8, 1 where that point is not seen in the next frame: its nearest pixel is outside,
+///   or
+///                       none of those around shows its surface from the same side
 ///   flow_backward, occlusion_backward   the same of the previous frame
 const std::vector<std::string>& truth_layer_names();
 

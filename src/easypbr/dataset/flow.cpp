@@ -9,31 +9,41 @@
 namespace easypbr::dataset {
 namespace {
 
-/// A point is seen in the other frame when a pixel beside its place has the same object at this part of its
-/// depth.
-constexpr float depth_tolerance = 0.01f;
+/// How far a point's depth and that of a pixel beside its place may differ, as a part of it, where the two
+/// are on faces that meet at an edge, or on what has no faces.
+constexpr double depth_tolerance = 0.01;
+/// A smooth surface leaves the plane of a pixel by no more than its points are apart across the view; facets
+/// lean from it.
+constexpr double slack = 1.5;
+/// Of single precision, as a part of the depth.
+constexpr double rounding = 1e-4, plane_rounding = 1e-5;
 
 /// An object of this frame in the other one; none when it is not shown there.
 struct Motion {
     const SceneSnapshot::Object* there = nullptr;
     uint32_t there_number = 0;
     bool same_faces = false;               ///< vertices correspond, even if they have moved
+    bool same_elements = false;            ///< indices of faces and vertices correspond
     Eigen::Affine3d T_mesh_cv, T_cv_mesh;  ///< of this frame back to the mesh, and on to the other's camera
+    Eigen::Affine3d T_cv_mesh_here, T_mesh_cv_there;  ///< their inverses
 };
 
 std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
     std::vector<Motion> all;
     for (const auto& object : now.scene.objects) {
         Motion motion;
-        motion.T_mesh_cv = cv_from_mesh(now.camera, object).inverse();
+        motion.T_cv_mesh_here = cv_from_mesh(now.camera, object);
+        motion.T_mesh_cv = motion.T_cv_mesh_here.inverse();
         const auto found = std::ranges::find(other.scene.objects, object.name, &SceneSnapshot::Object::name);
         if (found != other.scene.objects.end()) {
             motion.there = &*found;
             motion.there_number = uint32_t(found - other.scene.objects.begin()) + 1;
             motion.T_cv_mesh = cv_from_mesh(other.camera, *found);
-            motion.same_faces = found->mesh->F.rows() == object.mesh->F.rows() &&
-                                found->mesh->V.rows() == object.mesh->V.rows() &&
-                                found->mesh->V.revision() != object.mesh->V.revision();
+            motion.T_mesh_cv_there = motion.T_cv_mesh.inverse();
+            motion.same_elements = found->mesh->F.rows() == object.mesh->F.rows() &&
+                                   found->mesh->V.rows() == object.mesh->V.rows();
+            motion.same_faces =
+                motion.same_elements && found->mesh->V.revision() != object.mesh->V.revision();
         }
         all.push_back(motion);
     }
@@ -59,15 +69,107 @@ Vec3d moved(const Surfaces& now, size_t i, const Motion& motion) {
     return motion.T_cv_mesh * p;
 }
 
-bool is_seen(const Surfaces& other, const Vec2d& pixel, const Motion& motion, float depth) {
+/// The outward direction of the side of a voxel on which a point of the mesh's frame lies; 0 where it is on
+/// none.
+Vec3d side_of_voxel(const MeshData& mesh, size_t vertex, double size, const Vec3d& point) {
+    const Vec3d origin = mesh.V.row(0).transpose().cast<double>();
+    const Vec3d cell = (mesh.V.row(Eigen::Index(vertex)).transpose().cast<double>() - origin) / size;
+    const Vec3d place = (point - origin) / size - Vec3d((cell.array() + 0.5).floor());
+    Eigen::Index axis;
+    const double farthest = place.cwiseAbs().maxCoeff(&axis);
+    Vec3d side = Vec3d::Zero();
+    if (std::abs(farthest - 0.5) < 0.01) side[axis] = place[axis] > 0 ? 1 : -1;
+    return side;
+}
+
+/// The normal of what a pixel sees, in the frame of a camera: unit, 0 where there is none. Of a face that of
+/// its corners' order, of voxels outward, else the vertex's. `mesh` has the vertices, `T_cv_mesh` moves them.
+Vec3d normal_of(const Surfaces& s, size_t i, const MeshData& mesh, const Eigen::Affine3d& T_cv_mesh,
+                const Vec3d& point_mesh) {
+    const auto element = Eigen::Index(s.element_of(i));
+    Vec3d normal = Vec3d::Zero();
+    if (s.on_face(i)) {
+        Vec3d corner[3];
+        for (int k = 0; k < 3; ++k) corner[k] = Vec3(mesh.V.row(mesh.F(element, k))).cast<double>();
+        normal = (T_cv_mesh.linear() * (corner[1] - corner[0]))
+                     .cross(Vec3d(T_cv_mesh.linear() * (corner[2] - corner[0])));
+    } else {
+        const double voxel_size = s.voxel_sizes[s.object[i] - 1];
+        if (voxel_size > 0 && element < mesh.V.rows())
+            normal = side_of_voxel(mesh, size_t(element), voxel_size, point_mesh);
+        else if (voxel_size == 0 && element < mesh.N.rows())
+            normal = Vec3(mesh.N.row(element)).cast<double>();
+        normal = T_cv_mesh.linear().inverse().transpose() * normal;
+    }
+    const double length = normal.norm();
+    return length > 0 && std::isfinite(length) ? Vec3d(normal / length) : Vec3d(Vec3d::Zero());
+}
+
+/// Whether what a pixel sees are pieces of planes.
+bool is_flat(const Surfaces& s, size_t i) {
+    return s.on_face(i) || s.voxel_sizes[s.object[i] - 1] > 0;
+}
+
+/// Whether one side or the other of a surface faces the camera: its sign.
+double facing(const Camera& camera, const Vec3d& normal, const Vec3d& point) {
+    return camera.projection == Projection::orthographic ? normal.z() : normal.dot(point);
+}
+
+/// A point of this frame as it lies in the other one.
+struct Target {
+    Vec3d point, normal;  ///< in the other camera's frame
+    bool turned;          ///< the camera faces the other side of its surface
+};
+
+Target target_of(const Surfaces& now, size_t i, const Motion& motion, const Surfaces& other) {
+    Target target;
+    target.point = moved(now, i, motion);
+    const Vec3d here = now.position[i].cast<double>(), here_mesh = motion.T_mesh_cv * here;
+    const MeshData& mesh = now.mesh_of(i);
+    const MeshData& shape = motion.same_faces ? *motion.there->mesh : mesh;
+    target.normal = normal_of(now, i, now.on_face(i) ? shape : mesh, motion.T_cv_mesh, here_mesh);
+    const Vec3d before = normal_of(now, i, mesh, motion.T_cv_mesh_here, here_mesh);
+    target.turned = facing(now.camera, before, here) * facing(other.camera, target.normal, target.point) < 0;
+    return target;
+}
+
+/// Whether a pixel of the other frame, beside the target's place, shows the surface that the target is on.
+bool shows(const Surfaces& other, size_t j, const Surfaces& now, size_t i, const Motion& motion,
+           const Target& target) {
+    if (other.object[j] != motion.there_number) return false;
+    const bool flat = is_flat(now, i) && is_flat(other, j);
+    const bool is_voxel = flat && !now.on_face(i);
+    if (motion.same_elements && !is_voxel && now.on_face(i) == other.on_face(j) &&
+        now.element[i] == other.element[j])
+        return true;
+    const Vec3d &p = target.point, q = other.position[j].cast<double>();
+    const Vec3d normal =
+        normal_of(other, j, *motion.there->mesh, motion.T_cv_mesh, motion.T_mesh_cv_there * q);
+    const double off_seen = std::abs(normal.dot(p - q)), off_own = std::abs(target.normal.dot(p - q));
+    const bool has_normals = !normal.isZero() && !target.normal.isZero();
+    // What turned its back is hidden by its front, however thin it is, unless there is but one sheet of it.
+    const bool same_side = facing(other.camera, normal, q) * facing(other.camera, target.normal, p) > 0;
+    if (has_normals && target.turned && !same_side && off_seen > plane_rounding * p.z()) return false;
+    const bool same_depth = std::abs(p.z() - q.z()) <= depth_tolerance * p.z();
+    if (!flat || !has_normals) return same_depth;
+    const double across = other.camera.projection == Projection::orthographic
+                              ? (p - q).head<2>().norm()
+                              : (p.head<2>() - q.head<2>() * (p.z() / q.z())).norm();
+    const double tolerance = slack * across + rounding * p.z();
+    // Within both planes at any slant; at an edge, within one.
+    return std::max(off_seen, off_own) <= tolerance ||
+           (same_depth && std::min(off_seen, off_own) <= tolerance);
+}
+
+bool is_seen(const Surfaces& other, const Vec2d& pixel, const Surfaces& now, size_t i, const Motion& motion,
+             const Target& target) {
+    const Vec2d end = other.size.cast<double>() - Vec2d(0.5, 0.5);
+    if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < end.x() && pixel.y() < end.y())) return false;
     const int x0 = int(std::floor(pixel.x())), y0 = int(std::floor(pixel.y()));
-    for (int y = y0; y <= y0 + 1; ++y)
-        for (int x = x0; x <= x0 + 1; ++x) {
-            if (x < 0 || y < 0 || x >= other.size.x() || y >= other.size.y()) continue;
-            const size_t i = size_t(y) * size_t(other.size.x()) + size_t(x);
-            if (other.object[i] != motion.there_number) continue;
-            if (std::abs(other.position[i].z() - depth) <= depth_tolerance * depth) return true;
-        }
+    for (int y = std::max(0, y0); y <= std::min(other.size.y() - 1, y0 + 1); ++y)
+        for (int x = std::max(0, x0); x <= std::min(other.size.x() - 1, x0 + 1); ++x)
+            if (shows(other, size_t(y) * size_t(other.size.x()) + size_t(x), now, i, motion, target))
+                return true;
     return false;
 }
 
@@ -85,13 +187,14 @@ void optical_flow(const Surfaces& now, const Surfaces& other, LayerArray& flow, 
         const Motion& motion = all[now.object[i] - 1];
         o[i] = 1;
         if (!motion.there) return;
-        const Vec3d p = moved(now, i, motion);
+        const Target target = target_of(now, i, motion, other);
+        const Vec3d& p = target.point;
         if (!orthographic && !(p.z() > 0)) return;
         const Vec2d place = project(other.camera, other.size, p);
         const size_t x = i % size_t(now.size.x()), y = i / size_t(now.size.x());
         f[2 * i] = float(place.x() - double(x));
         f[2 * i + 1] = float(place.y() - double(y));
-        o[i] = !is_seen(other, place, motion, float(p.z()));
+        o[i] = !is_seen(other, place, now, i, motion, target);
     });
 }
 
