@@ -409,6 +409,46 @@ TEST(GroundTruth, DistortionAppliesToEveryLayer) {
     }
 }
 
+// The polynomial r - r^3 / 4 grows up to r = sqrt(4 / 3) = 1.155. What lies further out has no place, though
+// the formula gives one inside of the picture: corners at slopes of 0.81 sqrt(2) = 1.146 have one, at 0.82
+// sqrt(2) = 1.160 not.
+TEST(GroundTruth, BeyondTheFoldOfALensIsNoPlace) {
+    const Vec2i size(160, 120);
+    Camera camera = opencv_camera(off_centre_K(), size);
+    camera.distortion = Distortion::from_coefficients(DistortionModel::brown_conrady, {-0.25, 0, 0, 0});
+    for (const bool within : {true, false}) {
+        Scene scene;
+        scene.show(moved(facing_square(within ? 0.81f : 0.82f), {0, 0, -1}), "square");
+        app::Session session = plain_session(scene);
+        session.set_camera(camera);
+        const Instance square = ground_truth(session, {}, with_instances(size)).instances.at(0);
+        EXPECT_EQ(square.corners_px.array().isFinite().all(), within);
+        EXPECT_EQ(square.corners_px.array().isNaN().all(), !within);
+    }
+    Scene scene;
+    Mesh box = moved(make_box(Vec3(0.4f, 0.4f, 0.4f)), {2.6, 0, -1.5});
+    scene.show(box, "box");
+    app::Session session = plain_session(scene);
+    session.set_camera(camera);
+    const app::Moment before = session.moment(size);
+    box.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, -1.5)));
+    TruthOptions options;
+    options.size = size;
+    options.previous = &before;
+    const GroundTruth truth =
+        ground_truth(session, {"flow_backward", "occlusion_backward", "depth"}, options);
+    int seen = 0;
+    for (size_t i = 0; i < size_t(size.prod()); ++i) {
+        const float* flow = &truth.layers.at("flow_backward").floats()[2 * i];
+        const bool is_covered = truth.layers.at("depth").floats()[i] > 0;
+        seen += is_covered;
+        ASSERT_EQ(truth.layers.at("occlusion_backward").bytes()[i], is_covered);
+        ASSERT_EQ(std::isnan(flow[0]) && std::isnan(flow[1]), is_covered);
+        ASSERT_TRUE(is_covered || (flow[0] == 0 && flow[1] == 0));
+    }
+    EXPECT_GT(seen, 1000);
+}
+
 // Labels of faces, and of vertices by the nearest corner; classes where there are none.
 TEST(GroundTruth, SemanticIds) {
     Scene scene;

@@ -265,11 +265,11 @@ def test_flow_files_lead_to_the_next_picture(tmp_path):
 
 
 def test_flow_that_does_not_fit_is_not_valid():
-    flow = np.array([[[1.5, -2], [511, 0], [512, 0], [0, -513]]], np.float32)
-    encoded = encode_flow(flow, np.array([[True, True, True, True]]))
+    flow = np.array([[[1.5, -2], [511, 0], [512, 0], [0, -513], [np.nan, np.nan]]], np.float32)
+    encoded = encode_flow(flow, np.array([[True, True, True, True, True]]))
     # KITTI's devkit: u = (R - 2^15) / 64.
-    assert encoded.tolist() == [[[32864, 32640, 1], [65472, 32768, 1], [0, 0, 0], [0, 0, 0]]]
-    assert (encode_flow(flow, np.zeros((1, 4), bool)) == 0).all()
+    assert encoded.tolist() == [[[32864, 32640, 1], [65472, 32768, 1], [0, 0, 0], [0, 0, 0], [0, 0, 0]]]
+    assert (encode_flow(flow, np.zeros((1, 5), bool)) == 0).all()
 
 
 def test_exr_holds_what_npz_holds(tmp_path):

@@ -59,7 +59,7 @@ struct Instance {
     Box3d box;
     /// Corners of the box: bit 0 of the row is x, bit 1 y, bit 2 z (0: least).
     Eigen::Matrix<double, 8, 3> corners_world, corners_cam;
-    Eigen::Matrix<double, 8, 2> corners_px;  ///< NaN behind the camera
+    Eigen::Matrix<double, 8, 2> corners_px;  ///< NaN behind the camera, and where the lens's polynomial folds
 };
 
 /// Values of every pixel, row 0 on top, `channels` to a pixel.
@@ -91,7 +91,10 @@ struct LayerArray {
 ///                       vertices on top of faces and of the first vertex in a voxel; -1 of nothing
 ///   barycentrics        f32 x 3, weights of the face's corners; 0 on what is no face
 ///   uv                  f32 x 2
-///   flow_forward        f32 x 2, from the pixel to where its point is in the next frame, pixels
+///   flow_forward        f32 x 2, from the pixel to where its point is in the next frame, pixels; NaN where
+///   it
+///                       has no place there: behind the camera, where the lens's polynomial folds, or its
+///                       object is not shown
 ///   occlusion_forward   u8, 1 where that point is not seen in the next frame: its nearest pixel is outside,
 ///   or
 ///                       none of those around shows its surface from the same side

@@ -217,9 +217,10 @@ class Flow(Writer):
 
 
 def encode_flow(flow: NDArray[Any], valid: NDArray[Any]) -> NDArray[Any]:
-    """height x width x 3 of uint16. What is 512 pixels or more cannot be said and is not valid."""
+    """height x width x 3 of uint16. What is 512 pixels or more cannot be said and is not valid,
+    nor is what is not finite."""
     values = np.rint(np.asarray(flow, float) * 64 + 32768)
-    valid = valid & (values >= 0).all(-1) & (values < 65536).all(-1)
+    valid = valid & np.isfinite(values).all(-1) & (values >= 0).all(-1) & (values < 65536).all(-1)
     return np.where(valid[..., None], np.dstack([values, np.ones(valid.shape)]), 0).astype(np.uint16)
 
 

@@ -1,6 +1,7 @@
 // Optical flow: where the points of one frame are in another.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/dataset/flow.h"
@@ -181,15 +182,16 @@ void optical_flow(const Surfaces& now, const Surfaces& other, LayerArray& flow, 
     float* f = std::get<std::vector<float>>(flow.values).data();
     uint8_t* o = std::get<std::vector<uint8_t>>(occlusion.values).data();
     const std::vector<Motion> all = motions(now, other);
-    const bool orthographic = other.camera.projection == Projection::orthographic;
+    const double reach = lens_reach(other.camera);
     parallel_for(now.object.size(), 1 << 12, [&](size_t i) {
         if (!now.covered(i)) return;
         const Motion& motion = all[now.object[i] - 1];
         o[i] = 1;
+        f[2 * i] = f[2 * i + 1] = std::numeric_limits<float>::quiet_NaN();
         if (!motion.there) return;
         const Target target = target_of(now, i, motion, other);
         const Vec3d& p = target.point;
-        if (!orthographic && !(p.z() > 0)) return;
+        if (!is_projected(other.camera, reach, p)) return;
         const Vec2d place = project(other.camera, other.size, p);
         const size_t x = i % size_t(now.size.x()), y = i / size_t(now.size.x());
         f[2 * i] = float(place.x() - double(x));

@@ -96,14 +96,15 @@ void add_geometry(Instance& instance, const Surfaces& s) {
     const Eigen::Affine3d T_cv_world =
         Eigen::Affine3d(s.camera.opencv_T_world_cam()).inverse(Eigen::Isometry);
     instance.T_cam_obj = T_cv_world * instance.T_world_obj;
+    const double reach = lens_reach(s.camera);
     for (int i = 0; i < 8; ++i) {
         const Vec3d corner =
             instance.box.isEmpty() ? Vec3d(Vec3d::Zero()) : instance.box.corner(Box3d::CornerType(i));
         const Vec3d seen = instance.T_cam_obj * corner;
         instance.corners_world.row(i) = instance.T_world_obj * corner;
         instance.corners_cam.row(i) = seen;
-        const bool before = seen.z() > 0 || s.camera.projection == Projection::orthographic;
-        instance.corners_px.row(i) = before
+        const bool is_shown = is_projected(s.camera, reach, seen);
+        instance.corners_px.row(i) = is_shown
                                          ? project(s.camera, s.size, seen)
                                          : Vec2d(Vec2d::Constant(std::numeric_limits<double>::quiet_NaN()));
     }
@@ -180,20 +181,6 @@ Bitmap inside_picture(const PixelBox& area, const std::vector<uint8_t>& alone, V
     return bitmap;
 }
 
-/// The slope up to which the lens moves points outward the further out they are. Beyond, its polynomial says
-/// nothing of a real lens.
-double growing_reach(const Distortion& lens) {
-    constexpr double step = 1.01, largest = 100;
-    double before = 0, reach = 0;
-    for (double slope = 1e-3; slope < largest; slope *= step) {
-        const double now = lens.distort(Vec2d(slope, 0)).norm();
-        if (!(now > before)) break;
-        before = now;
-        reach = slope;
-    }
-    return reach;
-}
-
 /// The same through a lens: what is inside is looked up in the picture that was drawn.
 void count_warped(Instance& instance, const PixelBox& area, const std::vector<uint8_t>& alone,
                   const app::LensMap& lens, const Surfaces& s) {
@@ -210,7 +197,7 @@ void count_warped(Instance& instance, const PixelBox& area, const std::vector<ui
     }
     // Outside of the picture pixels are of another size: parts are compared in the drawn picture.
     int all = 0, inside = 0;
-    const double reach = s.camera.distortion ? growing_reach(*s.camera.distortion) : 1e30;
+    const double reach = lens_reach(s.camera);
     const Intrinsics& k = *lens.drawn.intrinsics;
     for (size_t i = 0; i < alone.size(); ++i) {
         if (!alone[i]) continue;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 #include "easypbr/core/parallel.h"
@@ -111,6 +113,43 @@ Vec2d project(const Camera& camera, Vec2i size, const Vec3d& p) {
     Vec2d slopes(p.x() / p.z(), p.y() / p.z());
     if (camera.distortion) slopes = camera.distortion->distort(slopes);
     return {K(0, 0) * slopes.x() + K(0, 1) * slopes.y() + K(0, 2), K(1, 1) * slopes.y() + K(1, 2)};
+}
+
+double lens_reach(const Camera& camera) {
+    constexpr double unlimited = std::numeric_limits<double>::infinity();
+    if (!camera.distortion) return unlimited;
+    constexpr double step = 1.01, largest = 100;
+    constexpr int directions = 16;
+    double least = unlimited;
+    for (int k = 0; k < directions; ++k) {
+        const double angle = 2 * std::numbers::pi * k / directions;
+        const auto reached = [&](double slope) {
+            return camera.distortion->distort(slope * Vec2d(std::cos(angle), std::sin(angle))).norm();
+        };
+        double slope = 1e-3, before = 0;
+        for (; slope < largest; slope *= step) {
+            const double now = reached(slope);
+            if (!(now > before)) break;
+            before = now;
+        }
+        if (!(slope < largest)) continue;
+        // The fold lies in the last two steps: the largest value by thirds.
+        double low = slope / (step * step), high = slope;
+        for (int i = 0; i < 50; ++i) {
+            const double third = (high - low) / 3;
+            if (reached(low + third) < reached(high - third))
+                low += third;
+            else
+                high -= third;
+        }
+        least = std::min(least, low);
+    }
+    return least;
+}
+
+bool is_projected(const Camera& camera, double lens_reach, const Vec3d& p) {
+    if (camera.projection == Projection::orthographic) return true;
+    return p.z() > 0 && p.head<2>().norm() < lens_reach * p.z();
 }
 
 Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app::LensMap& lens) {

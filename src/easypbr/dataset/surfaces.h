@@ -42,6 +42,13 @@ Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& 
 /// Pixel (centres at integers) of a point in the camera's frame with z > 0, through the lens.
 Vec2d project(const Camera& camera, Vec2i size, const Vec3d& point_cv);
 
+/// The slope up to which a camera's lens moves points outward the further out they are, in all directions;
+/// infinite where it always does. Beyond, its polynomial folds back and says nothing of a real lens.
+double lens_reach(const Camera& camera);
+
+/// Whether project() tells where a point is: before the camera, within the reach of its lens.
+bool is_projected(const Camera& camera, double lens_reach, const Vec3d& point_cv);
+
 /// A face is met in double precision by the ray itself, so that the result does not have the rasteriser's
 /// rounding; points of splats have the depth that was drawn.
 Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app::LensMap& lens);

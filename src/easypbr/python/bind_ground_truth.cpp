@@ -213,7 +213,7 @@ void bind_space(InstanceClass& instance) {
             "corners_px", [](const Instance& i) { return matrix_to_numpy(i.corners_px); },
             nb::sig("def corners_px(self) -> numpy.ndarray"),
             "8 x 2 pixels of the projected corners (pixel centres at integers), lens distortion included; "
-            "NaN behind the camera.");
+            "NaN behind the camera and where the polynomial of the lens folds back.");
 }
 
 }  // namespace
