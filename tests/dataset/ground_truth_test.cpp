@@ -492,6 +492,39 @@ TEST(GroundTruth, InstancesAreObjectsOrNodes) {
     EXPECT_EQ(nodes.instances[1].visible_fraction, 1);
 }
 
+// A child "b" of "a", and what the scene shows as "a/b": two instances, however they are told apart. The
+// child is in the left half of the picture, and the class "a/b" is of what the scene shows.
+TEST(GroundTruth, NamesOfChildrenAndOfTheSceneDiffer) {
+    Scene scene;
+    Mesh parent = moved(facing_square(0.3f), {-1, 0, 0});
+    MeshData child = *facing_square(0.2f).snapshot();
+    child.name = "b";
+    parent.add_child(moved(Mesh(child), {0, 0.6, 0}));
+    scene.show(parent, "a");
+    scene.show(moved(facing_square(0.25f), {1, 0, 0}), "a/b");
+    app::Session session = plain_session(scene, 80);
+    look_from(session, Vec3d(0, 0, 5), 35);
+    TruthOptions options = with_instances({80, 80});
+    options.classes = {{"a", 1}, {"a/b", 2}};
+    const GroundTruth objects = ground_truth(session, {}, options);
+    ASSERT_EQ(objects.instances.size(), 2u);
+    // Both squares of "a": from -0.3 to 0.8 in its frame.
+    EXPECT_NEAR(named(objects, "a").box.sizes().y(), 1.1, 1e-6);
+    EXPECT_NEAR(named(objects, "a/b").box.sizes().y(), 0.5, 1e-6);
+    for (const InstancesBy by : {InstancesBy::node, InstancesBy::part}) {
+        options.instances_by = by;
+        const GroundTruth nodes = ground_truth(session, {}, options);
+        ASSERT_EQ(nodes.instances.size(), 3u);
+        EXPECT_NEAR(named(nodes, "a").box.sizes().x(), 0.6, 1e-6);
+        EXPECT_NEAR(named(nodes, "a/b").box.sizes().x(), 0.5, 1e-6);
+        EXPECT_GT(named(nodes, "a/b").box_visible.x, 40);
+        EXPECT_EQ(named(nodes, "a/b").semantic_id, 2);
+        EXPECT_NEAR(named(nodes, "a/b#2").box.sizes().x(), 0.4, 1e-6);
+        EXPECT_LT(named(nodes, "a/b#2").box_visible.x, 40);
+        EXPECT_EQ(named(nodes, "a/b#2").semantic_id, 1);
+    }
+}
+
 TEST(GroundTruth, NamesWhatThereIsNot) {
     app::Session session = plain_session(Scene());
     try {

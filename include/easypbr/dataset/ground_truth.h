@@ -39,7 +39,9 @@ struct Bitmap {
 
 struct Instance {
     int id = 0;        ///< from 1 on, what the layer instance_id holds
-    std::string name;  ///< of the object, node, or node:part
+    /// Of the object, node, or node:part. What the scene shows keeps its name; where others have one that is
+    /// taken already, a number follows: "car/wheel#2".
+    std::string name;
     int semantic_id = 0;
 
     int pixels_visible = 0;

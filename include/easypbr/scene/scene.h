@@ -18,6 +18,9 @@ struct SceneSnapshot {
         std::string name;
         std::shared_ptr<const MeshData> mesh;
         Eigen::Affine3d T_world_mesh;  ///< pose of V in the scene's frame: the mesh's offset is in it
+        /// The name under which its hierarchy is shown. `name` does not tell: a child "b" of "car" and what
+        /// is shown as "car/b" are both "car/b".
+        std::string root = {};
     };
     /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is
     /// hidden, or invisible by its style, is left out with its descendants.

@@ -61,7 +61,7 @@ std::optional<CudaLayers> cuda_layers(app::Session& session, const std::vector<s
                                  gl::Context::current().info().renderer));
     CudaLayers result;
     const app::Moment now = session.moment(options.size);
-    const InstanceTable table(now.scene, session.scene().names(), options.instances_by, options.classes);
+    const InstanceTable table(now.scene, options.instances_by, options.classes);
     app::PictureOptions picture{options.size, options.samples, app::Encoding::srgb8};
     std::optional<app::Drawn> drawn;
     for (const std::string name : {"hdr", "color"}) {

@@ -1,7 +1,11 @@
 // Optical flow: where the points of one frame are in another.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/dataset/flow.h"
@@ -31,14 +35,18 @@ struct Motion {
 
 std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
     std::vector<Motion> all;
+    // By name and by the name of what the scene shows; of siblings of one name, in their order.
+    std::map<std::pair<std::string, std::string>, std::deque<const SceneSnapshot::Object*>> there;
+    for (const auto& object : other.scene.objects) there[{object.root, object.name}].push_back(&object);
     for (const auto& object : now.scene.objects) {
         Motion motion;
         motion.T_cv_mesh_here = cv_from_mesh(now.camera, object);
         motion.T_mesh_cv = motion.T_cv_mesh_here.inverse();
-        const auto found = std::ranges::find(other.scene.objects, object.name, &SceneSnapshot::Object::name);
-        if (found != other.scene.objects.end()) {
-            motion.there = &*found;
-            motion.there_number = uint32_t(found - other.scene.objects.begin()) + 1;
+        if (auto& same = there[{object.root, object.name}]; !same.empty()) {
+            const SceneSnapshot::Object* const found = same.front();
+            same.pop_front();
+            motion.there = found;
+            motion.there_number = uint32_t(found - other.scene.objects.data()) + 1;
             motion.T_cv_mesh = cv_from_mesh(other.camera, *found);
             motion.T_mesh_cv_there = motion.T_cv_mesh.inverse();
             motion.same_elements = found->mesh->F.rows() == object.mesh->F.rows() &&

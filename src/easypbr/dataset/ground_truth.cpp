@@ -97,7 +97,7 @@ GroundTruth ground_truth(app::Session& session, const std::vector<std::string>& 
     if (next) optical_flow(now, *next, truth.layers["flow_forward"], truth.layers["occlusion_forward"]);
     if (previous)
         optical_flow(now, *previous, truth.layers["flow_backward"], truth.layers["occlusion_backward"]);
-    const InstanceTable table(now, session.scene().names(), options.instances_by, options.classes);
+    const InstanceTable table(now, options.instances_by, options.classes);
     for (const std::string& name : layers) {
         if (truth.layers.contains(name)) continue;
         std::optional<LayerArray> layer = surface_layer(name, now, table);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
@@ -13,12 +14,9 @@
 namespace easypbr::dataset {
 namespace {
 
-/// The name in the scene that a node belongs to: the longest that it begins with.
-std::string root_of(const std::string& node, const std::vector<std::string>& shown) {
-    std::string root;
-    for (const std::string& name : shown)
-        if (name.size() > root.size() && (node == name || node.starts_with(name + "/"))) root = name;
-    return root.empty() ? node : root;
+/// The name in the scene that a node belongs to.
+const std::string& root_of(const SceneSnapshot::Object& object) {
+    return object.root.empty() ? object.name : object.root;
 }
 
 void extend_by_vertices(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh,
@@ -300,44 +298,57 @@ InstancesBy instances_by_named(const std::string& name) {
     return InstancesBy(found - names.begin());
 }
 
-InstanceTable::InstanceTable(const SceneSnapshot& scene, const std::vector<std::string>& shown,
-                             InstancesBy by, const std::map<std::string, int>& classes) {
-    std::map<std::string, size_t> places;
-    const auto place_of = [&](const std::string& name, const std::string& root, const Eigen::Affine3d& T) {
-        const auto [found, is_new] = places.emplace(name, instances_.size());
-        if (!is_new) return found->second;
+InstanceTable::InstanceTable(const SceneSnapshot& scene, InstancesBy by,
+                             const std::map<std::string, int>& classes) {
+    std::set<std::string> taken;
+    std::map<std::string, size_t> roots;  // places, where an object is one instance with its children
+    for (const auto& object : scene.objects) taken.insert(root_of(object));
+    const auto add = [&](const std::string& name, const SceneSnapshot::Object& object) {
         Instance instance;
         instance.id = int(instances_.size()) + 1;
         instance.name = name;
-        const auto own = classes.find(name), of_root = classes.find(root);
+        const auto own = classes.find(name), of_root = classes.find(root_of(object));
         instance.semantic_id = own != classes.end()       ? own->second
                                : of_root != classes.end() ? of_root->second
                                                           : 0;
-        instance.T_world_obj = T;
+        instance.T_world_obj = object.T_world_mesh;
         instances_.push_back(instance);
-        return found->second;
+        return instances_.size() - 1;
+    };
+    /// With a number where another instance, or what the scene shows, has the name.
+    const auto free_name = [&](const std::string& name) {
+        std::string free = name;
+        for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}#{}", name, number);
+        return free;
     };
     for (const auto& object : scene.objects) {
-        const std::string root = root_of(object.name, shown);
+        const std::string& root = root_of(object);
         std::vector<size_t> row;
         const std::vector<MeshPart>& parts = object.mesh->parts;
         const bool in_parts = by == InstancesBy::part && parts.size() > 1;
         for (size_t p = 0; p < (in_parts ? parts.size() : 1); ++p) {
-            std::string name = by == InstancesBy::object ? root : object.name;
-            if (in_parts)
-                name += fmt::format(":{}", parts[p].name.empty() ? std::to_string(p) : parts[p].name);
-            if (in_parts && places.contains(name)) name += fmt::format("#{}", p);
-            const size_t place = place_of(name, root, object.T_world_mesh);
+            size_t place = instances_.size();
+            if (by == InstancesBy::object) {
+                const auto [found, is_new] = roots.emplace(root, place);
+                place = is_new ? add(root, object) : found->second;
+            } else if (in_parts) {
+                const std::string part = parts[p].name.empty() ? std::to_string(p) : parts[p].name;
+                add(free_name(fmt::format("{}:{}", object.name, part)), object);
+            } else {
+                // Parents come first: the first node of a hierarchy is what the scene shows.
+                const bool is_shown = roots.emplace(root, place).second;
+                add(is_shown ? root : free_name(object.name), object);
+            }
             extend(place, object, in_parts ? &parts[p] : nullptr, 0);
             row.push_back(place);
         }
+        roots.emplace(root, row.front());
         table_.push_back(std::move(row));
     }
 }
 
-InstanceTable::InstanceTable(const Surfaces& s, const std::vector<std::string>& shown, InstancesBy by,
-                             const std::map<std::string, int>& classes)
-    : InstanceTable(s.scene, shown, by, classes) {
+InstanceTable::InstanceTable(const Surfaces& s, InstancesBy by, const std::map<std::string, int>& classes)
+    : InstanceTable(s.scene, by, classes) {
     for (size_t o = 0; o < s.scene.objects.size(); ++o)
         if (s.voxel_sizes[o] > 0 || (by == InstancesBy::part && !s.only_faces[o]))
             extend(of(o, 0), s.scene.objects[o], nullptr, s.voxel_sizes[o]);

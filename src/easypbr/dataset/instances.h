@@ -14,13 +14,11 @@ namespace easypbr::dataset {
 /// Which instance an object's part belongs to.
 class InstanceTable {
   public:
-    /// `shown` are the names in the scene; `classes` gives a semantic id to the objects of these names, and
-    /// to their instances.
-    InstanceTable(const SceneSnapshot& scene, const std::vector<std::string>& shown, InstancesBy by,
-                  const std::map<std::string, int>& classes);
+    /// `classes` gives a semantic id to the objects of these names, and to their instances. Names of
+    /// instances differ: what the scene shows keeps its own, others get a number.
+    InstanceTable(const SceneSnapshot& scene, InstancesBy by, const std::map<std::string, int>& classes);
     /// Of what has been drawn: boxes hold voxels, and that of the first part all that is drawn of vertices.
-    InstanceTable(const Surfaces& surfaces, const std::vector<std::string>& shown, InstancesBy by,
-                  const std::map<std::string, int>& classes);
+    InstanceTable(const Surfaces& surfaces, InstancesBy by, const std::map<std::string, int>& classes);
 
     /// Place in instances(); of an object's place in the snapshot and the part.
     size_t of(size_t object, size_t part) const {

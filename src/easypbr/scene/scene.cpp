@@ -39,16 +39,17 @@ auto& require_entry(Map& map, const std::string& name, const char* kind) {
 
 /// Adds the node and its descendants, with the poses of V + offset; what is invisible takes its descendants
 /// along. Descendants that are shown under a name of their own are left to that name.
-void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d& T_world_parent, int depth,
-               const std::set<const void*>& shown, std::vector<SceneSnapshot::Object>& objects) {
+void add_nodes(const Mesh& mesh, const std::string& name, const std::string& root,
+               const Eigen::Affine3d& T_world_parent, int depth, const std::set<const void*>& shown,
+               std::vector<SceneSnapshot::Object>& objects) {
     require_mesh_depth(depth);
     const auto data = mesh.snapshot();
     if (!data->style.visible.value_or(true)) return;
     const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
-    objects.push_back({name, data, T_world_mesh});
+    objects.push_back({name, data, T_world_mesh, root});
     for (const Mesh& child : data->children)
         if (!shown.count(child.identity()))
-            add_nodes(child, name + "/" + child.name(), T_world_mesh, depth + 1, shown, objects);
+            add_nodes(child, name + "/" + child.name(), root, T_world_mesh, depth + 1, shown, objects);
 }
 
 /// The offset of the first node with vertices among objects[first..end).
@@ -254,8 +255,8 @@ SceneSnapshot Scene::snapshot() const {
         if (entry.hidden) continue;
         const size_t first = result.objects.size();
         const std::optional<Mesh> parent = entry.mesh.parent();
-        add_nodes(entry.mesh, name, parent ? parent->T_world_mesh() : Eigen::Affine3d::Identity(), 0, shown,
-                  result.objects);
+        add_nodes(entry.mesh, name, name, parent ? parent->T_world_mesh() : Eigen::Affine3d::Identity(), 0,
+                  shown, result.objects);
         const auto offset = first_offset(result.objects, first, result.objects.size());
         if (offset && entry.order < earliest) origin = offset, earliest = entry.order;
     }
