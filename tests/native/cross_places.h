@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -108,6 +109,11 @@ inline void check_points(const Kernels& kernels) {
                          .world_pixels = run.set % 2 == 0 ? 0.0f : 4.0f,
                          .round = run.set % 3 != 0};
         set_view(batch.clip_from_mesh);
+        constexpr size_t pixels = 300 * 200;
+        auto* seen = run.array<uint64_t>(pixels);
+        for (size_t i = 0; i < pixels; ++i)
+            seen[i] = uint64_t(std::bit_cast<uint32_t>(0.1f * float(run.random.below(10)))) << 32;
+        if (run.set % 4 != 3) batch.seen = seen;
         auto* found = run.output<int32_t>(1 + 4 * count, Kind::bits);
         auto* depths = run.output<float>(count, Kind::floats);
         PointScreen screen;

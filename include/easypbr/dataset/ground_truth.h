@@ -94,12 +94,10 @@ struct LayerArray {
 ///   barycentrics        f32 x 3, weights of the face's corners; 0 on what is no face
 ///   uv                  f32 x 2
 ///   flow_forward        f32 x 2, from the pixel to where its point is in the next frame, pixels; NaN where
-///   it
-///                       has no place there: behind the camera, where the lens's polynomial folds, or its
+///                       it has no place there: behind the camera, where the lens's polynomial folds, or its
 ///                       object is not shown
 ///   occlusion_forward   u8, 1 where that point is not seen in the next frame: its nearest pixel is outside,
-///   or
-///                       none of those around shows its surface from the same side
+///                       or none of those around shows its surface from the same side
 ///   flow_backward, occlusion_backward   the same of the previous frame
 const std::vector<std::string>& truth_layer_names();
 

@@ -25,9 +25,10 @@ class DatasetSpec(DatasetTables):
     """A data set. Frame `i` follows from the spec, the seed and `i` alone."""
 
     @classmethod
-    def demo(cls) -> "DatasetSpec":
+    def demo(cls, count: int = 100) -> "DatasetSpec":
         """Drones of several shapes and materials before procedural skies: needs no files."""
         return cls(
+            count=count,
             objects=[ObjectSpec(class_name="drone", count=(1, 3), tilt_deg=20.0)],
             sensor=SensorSpec(exposure=(-0.7, 0.7), blur=(0.0, 0.8), noise=(0.0, 0.02)),
         )

@@ -81,7 +81,14 @@ class PointRaster {
             own.seen = seen;
             native::PointScreen screen;
             NeighborsHidden hidden(depths);
-            for (const uint32_t i : near) {
+            for (size_t place = 0; place < near.size(); ++place) {
+                // The next batch is somewhere else in memory.
+                if (place + 1 < near.size()) {
+                    const float* next = batches.points_of(near[place + 1]);
+                    for (size_t k = 0; k < 3 * native::PointBatch::most_points; k += 16)
+                        __builtin_prefetch(next + k);
+                }
+                const uint32_t i = near[place];
                 const PointBatches::Sphere& sphere = batches.sphere_of(i);
                 if (hidden.hides([&] { return culling.bounds(sphere.center, sphere.radius); })) continue;
                 own.points = batches.points_of(i);
