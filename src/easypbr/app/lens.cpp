@@ -57,7 +57,8 @@ size_t LensMap::nearest(size_t pixel) const {
 Vec2d LensMap::drawn_slope(size_t drawn) const {
     const Intrinsics& k = *this->drawn.intrinsics;
     const auto width = size_t(drawn_size.x());
-    return {(double(drawn % width) - k.cx) / k.fx, (double(drawn / width) - k.cy) / k.fy};
+    const size_t row = drawn / width;
+    return {(double(drawn % width) - k.cx) / k.fx, (double(row) - k.cy) / k.fy};
 }
 
 LensMap lens_map(const Camera& camera, Vec2i size) {

@@ -12,8 +12,9 @@ namespace {
 MeshData moved_arrays(const MeshData& mesh, const Eigen::Affine3d& T) {
     if (mesh.offset.isZero(0)) return transformed(mesh, T);
     MeshData data = transformed(mesh, Eigen::Affine3d(T.linear()));
-    LocalPositions positions = local_positions(data.V.cast<double>().rowwise() + (T * mesh.offset).transpose());
-    data.V = std::move(positions.V);
+    const LocalPositions positions =
+        local_positions(data.V.cast<double>().rowwise() + (T * mesh.offset).transpose());
+    data.V = positions.V;
     data.offset = positions.offset;
     return data;
 }

@@ -22,8 +22,8 @@ struct SurfaceFrame {
     std::vector<uint32_t> part;     ///< of faces, index into MeshData::parts; 0 of all else
     SceneSnapshot scene;            ///< with the objects' own data
     std::vector<bool> only_faces;   ///< for each object: nothing of it reaches beyond its vertices
-    std::vector<double>
-        voxel_sizes;  ///< for each object: edge of its voxels in the units of V, 0: it has none
+    /// For each object: the edge of its voxels in the units of V, 0: it has none.
+    std::vector<double> voxel_sizes;
 };
 
 }  // namespace easypbr::render
