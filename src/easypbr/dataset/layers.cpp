@@ -84,7 +84,7 @@ LayerArray object_coordinates(const Surfaces& s, const InstanceTable& table) {
     return vectors<3>(s, [&](size_t i) {
         const size_t place = table.of(s.object[i] - 1, s.part[i]);
         Vec3d p = T_obj_cv[place] * s.position[i].cast<double>();
-        // Points and surfels reach beyond the box of their positions.
+        // What vertices are drawn as reaches beyond the box of their positions.
         if (!s.on_face(i)) p = p.cwiseMax(boxes[place].min()).cwiseMin(boxes[place].max());
         return Vec3(p.cast<float>());
     });
