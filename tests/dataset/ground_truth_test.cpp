@@ -4,28 +4,13 @@
 
 #include <random>
 
+#include "dataset/placed_meshes.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
 namespace easypbr::dataset::ground_truth_test {
 namespace {
-
-Mesh moved(Mesh mesh, const Vec3d& by) {
-    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(by)));
-    return mesh;
-}
-
-/// OpenCV's camera at the origin that looks along the world's -z, y up.
-Camera opencv_camera(const Mat3d& K, Vec2i size) {
-    Mat4d T = Mat4d::Identity();
-    T.topLeftCorner<3, 3>() = Vec3d(1, -1, -1).asDiagonal();
-    return Camera::from_opencv(K, T, size.x(), size.y());
-}
-
-Mat3d off_centre_K() {
-    return (Mat3d() << 210, 0, 70.3, 0, 190, 41.9, 0, 0, 1).finished();
-}
 
 const Instance& named(const GroundTruth& truth, const std::string& name) {
     return *std::ranges::find(truth.instances, name, &Instance::name);
@@ -246,135 +231,6 @@ TEST(GroundTruth, FacesWeightsAndUv) {
         EXPECT_NEAR(truth.layers.at("object_coordinates").floats()[3 * i], p[0] / std::sqrt(8.0) + 0.5, 1e-5);
     }
     EXPECT_GT(seen, 800);
-}
-
-// The camera and an object move: the point that a pixel sees is projected by the other frame's own matrices.
-TEST(GroundTruth, FlowIsTheProjectionOfTheSamePoint) {
-    const Vec2i size(160, 120);
-    Scene scene;
-    Mesh ball = moved(make_sphere(0.5f, 64), {-0.2, 0, -4});
-    scene.show(ball, "ball");
-    scene.show(moved(facing_square(3), {0, 0, -6}), "wall");
-    app::Session session = plain_session(scene);
-    session.set_camera(opencv_camera(off_centre_K(), size));
-    const app::Moment before = session.moment(size);
-    ball.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0.1, 0.05, -3.9)));
-    TruthOptions options;
-    options.size = size;
-    options.previous = &before;
-    const GroundTruth now =
-        ground_truth(session, {"flow_backward", "occlusion_backward", "position", "instance_id"}, options);
-    const Mat3d K = off_centre_K();
-    int hidden = 0;
-    for (size_t i = 0; i < size_t(size.prod()); ++i) {
-        const int id = now.layers.at("instance_id").integers()[i];
-        if (id == 0) continue;
-        const float* p = &now.layers.at("position").floats()[3 * i];
-        Vec3d point(p[0], p[1], p[2]);
-        if (id == 1) point -= Vec3d(0.3, 0.05, 0.1);
-        const Vec3d pixel = K * Vec3d(point.x(), -point.y(), -point.z()) / -point.z();
-        const float* flow = &now.layers.at("flow_backward").floats()[2 * i];
-        EXPECT_NEAR(double(i % 160) + flow[0], pixel.x(), 2e-3);
-        EXPECT_NEAR(double(i / 160) + flow[1], pixel.y(), 2e-3);
-        hidden += now.layers.at("occlusion_backward").bytes()[i];
-    }
-    // A strip of the wall that the ball has uncovered, about 15 pixels wide and 50 high, and the ball's own
-    // edge.
-    EXPECT_GT(hidden, 200);
-    EXPECT_LT(hidden, 1500);
-    options.previous = nullptr;
-    EXPECT_THROW(ground_truth(session, {"flow_backward"}, options), ArgumentError);
-}
-
-/// Of a mesh at a pose now, from the frame in which it was at another pose: covered pixels, and those whose
-/// point was not seen there.
-struct Counts {
-    int seen = 0, occluded = 0;
-};
-Counts occluded_from(Mesh mesh, const Eigen::Affine3d& before, const Eigen::Affine3d& now) {
-    const Vec2i size(160, 120);
-    Scene scene;
-    scene.show(mesh, "mesh");
-    app::Session session = plain_session(scene);
-    session.set_camera(opencv_camera(off_centre_K(), size));
-    mesh.set_T_parent_mesh(before);
-    const app::Moment moment = session.moment(size);
-    mesh.set_T_parent_mesh(now);
-    TruthOptions options;
-    options.size = size;
-    options.previous = &moment;
-    const GroundTruth truth = ground_truth(session, {"occlusion_backward", "depth"}, options);
-    Counts counts;
-    for (size_t i = 0; i < size_t(size.prod()); ++i) {
-        counts.seen += truth.layers.at("depth").floats()[i] > 0;
-        counts.occluded += truth.layers.at("occlusion_backward").bytes()[i];
-    }
-    return counts;
-}
-
-// A card that turns its back shows none of the points of its front, however thin it is. Of a single sheet the
-// same points are seen from behind.
-TEST(GroundTruth, WhatTurnsItsBackIsOccluded) {
-    const Eigen::Affine3d now(Eigen::Translation3d(0, 0, -2));
-    const Eigen::Affine3d turned = now * Eigen::AngleAxisd(radians(180), Vec3d::UnitY());
-    for (const float thickness : {0.1f, 0.01f, 0.001f}) {
-        const Counts card = occluded_from(make_box(Vec3(0.6f, 0.4f, thickness)), turned, now);
-        EXPECT_GT(card.seen, 1500);
-        EXPECT_EQ(card.occluded, card.seen) << thickness;
-        EXPECT_EQ(occluded_from(make_box(Vec3(0.6f, 0.4f, thickness)), now, now).occluded, 0) << thickness;
-    }
-    const Counts sheet = occluded_from(facing_square(0.3f), turned, now);
-    EXPECT_GT(sheet.seen, 1500);
-    EXPECT_EQ(sheet.occluded, 0);
-    MeshData voxels;
-    Array3f::Dense V(400, 3);
-    for (int i = 0; i < 400; ++i)
-        V.row(i) << 0.015f * (float(i % 20) - 9.5f), 0.015f * (float(i / 20) - 9.5f), 0;
-    voxels.V = Array3f(V);
-    voxels.voxel_size = 0.015f;
-    const Counts layer = occluded_from(Mesh(voxels), turned, now);
-    EXPECT_GT(layer.seen, 500);
-    EXPECT_EQ(layer.occluded, layer.seen);
-}
-
-// A floor of small faces, seen at down to two degrees, hides nothing of itself: what is not seen is outside
-// of the picture. A pixel is 2.3 % of the depth there.
-TEST(GroundTruth, GrazingSurfacesAreNotOccluded) {
-    constexpr int side = 120;
-    MeshData floor;
-    Array3f::Dense V((side + 1) * (side + 1), 3);
-    Array3i::Dense F(2 * side * side, 3);
-    for (int i = 0; i <= side; ++i)
-        for (int k = 0; k <= side; ++k)
-            V.row(i * (side + 1) + k) << 8.0f * (float(k) / side - 0.5f), -0.2f, -1 - 5.0f * float(i) / side;
-    for (int i = 0; i < side; ++i)
-        for (int k = 0; k < side; ++k) {
-            const int a = i * (side + 1) + k, b = a + side + 1;
-            F.row(2 * (i * side + k)) << a, a + 1, b + 1;
-            F.row(2 * (i * side + k) + 1) << a, b + 1, b;
-        }
-    floor.V = Array3f(V);
-    floor.F = Array3i(F);
-    const Eigen::Affine3d now = Eigen::Affine3d::Identity();
-    const Eigen::Affine3d before(Eigen::Translation3d(0.01, 0, -0.02));
-    const Counts counts = occluded_from(Mesh(floor), before, now);
-    EXPECT_GT(counts.seen, 4500);
-    // It was 0.01 to the right, 2.1 pixels at its near end: of its 38 rows three columns at most were
-    // outside.
-    EXPECT_LE(counts.occluded, 3 * 38);
-}
-
-// A wall that was 0.9 pixels further to the left: what the first column shows was outside. 0.4 pixels to the
-// left its nearest pixel is the first column still.
-TEST(GroundTruth, OutsideIsWhereTheNearestPixelIs) {
-    const Eigen::Affine3d now(Eigen::Translation3d(0, 0, -3));
-    const double pixel = 3.0 / 210;
-    EXPECT_EQ(occluded_from(facing_square(5), Eigen::Translation3d(-0.9 * pixel, 0, 0) * now, now).occluded,
-              120);
-    EXPECT_EQ(occluded_from(facing_square(5), Eigen::Translation3d(-0.4 * pixel, 0, 0) * now, now).occluded,
-              0);
-    EXPECT_EQ(occluded_from(facing_square(5), Eigen::Translation3d(0.9 * pixel, 0, 0) * now, now).occluded,
-              120);
 }
 
 // Through a lens with distortion and skew every pixel's point is on the ray that the lens's formula gives.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "dataset/placed_meshes.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
@@ -53,10 +54,8 @@ Mesh primitives(Kind kind, const std::vector<Vec3>& places, const Vec3d& at, flo
 /// Of a camera at the origin that looks along -z.
 GroundTruth truth_of(const Scene& scene, const std::vector<std::string>& layers = {}) {
     app::Session session = plain_session(scene);
-    Mat4d T = Mat4d::Identity();
-    T.topLeftCorner<3, 3>() = Vec3d(1, -1, -1).asDiagonal();
     const Mat3d K = (Mat3d() << f, 0, cx, 0, f, cy, 0, 0, 1).finished();
-    session.set_camera(Camera::from_opencv(K, T, size.x(), size.y()));
+    session.set_camera(opencv_camera(K, size));
     TruthOptions options;
     options.size = size;
     options.instances = true;

@@ -38,7 +38,7 @@ struct Bitmap {
 };
 
 struct Instance {
-    int id = 0;        ///< from 1 on, what the layer instance_id holds
+    int id = 0;  ///< from 1 on, what the layer instance_id holds
     /// Of the object, node, or node:part. What the scene shows keeps its name; where others have one that is
     /// taken already, a number follows: "car/wheel#2".
     std::string name;

@@ -8,9 +8,9 @@
 
 namespace easypbr {
 
-/// A new mesh whose vertices, offset included, are at T x, with normals, windings and surfels as transformed(MeshData) has
-/// them; the descendants follow. Its own pose stays. Throws ArgumentError when T is not finite or cannot be
-/// inverted.
+/// A new mesh whose vertices, offset included, are at T x, with normals, windings and surfels as
+/// transformed(MeshData) has them; the descendants follow. Its own pose stays. Throws ArgumentError when T is
+/// not finite or cannot be inverted.
 Mesh transformed(const Mesh& mesh, const Eigen::Affine3d& T);
 
 /// One mesh of all, descendants included, in the frame that the meshes are placed in: poses are applied. See
@@ -38,11 +38,11 @@ struct OrientedBox {
     Vec3d size{0, 0, 0};                                            ///< lengths along its axes, falling
 };
 
-/// A small box around all vertices after the mesh's pose, its offset added as bounding_box() does. Its axes start as the principal ones of
-/// the vertices and as those of the frame; then, along each axis in turn, the rectangle of least area around
-/// the vertices' projection (rotating calipers, Toussaint 1983) replaces the other two as long as the volume
-/// falls. The least volume itself is not promised. Never larger than bounding_box(). Throws ArgumentError
-/// when there are no vertices.
+/// A small box around all vertices after the mesh's pose, its offset added as bounding_box() does. Its axes
+/// start as the principal ones of the vertices and as those of the frame; then, along each axis in turn, the
+/// rectangle of least area around the vertices' projection (rotating calipers, Toussaint 1983) replaces the
+/// other two as long as the volume falls. The least volume itself is not promised. Never larger than
+/// bounding_box(). Throws ArgumentError when there are no vertices.
 OrientedBox oriented_bounding_box(const Mesh& mesh);
 
 /// For each vertex the number of its piece, from 0 by first vertex. Vertices are connected by faces, by edges

@@ -10,9 +10,9 @@ namespace easypbr {
 struct NeighborhoodOptions {
     /// Neighbours of a point that its surface is estimated from, 3 to 256; all others when there are fewer.
     int k = 16;
-    /// Normals are turned towards this point (of the mesh's own frame, offset included), as where a scanner stood. Without
-    /// one, those of neighbours agree, and closed shapes face outwards, open ones the positive side of the
-    /// axis nearest to their mean normal, so that ground faces up.
+    /// Normals are turned towards this point (of the mesh's own frame, offset included), as where a scanner
+    /// stood. Without one, those of neighbours agree, and closed shapes face outwards, open ones the positive
+    /// side of the axis nearest to their mean normal, so that ground faces up.
     std::optional<Vec3d> viewpoint;
 };
 

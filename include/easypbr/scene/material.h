@@ -44,12 +44,12 @@ struct SurfaceShader {
 struct Material {
     std::string name;
     Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default counts as white where vertices have colours
-    float opacity = 1;             ///< 0 transparent to 1 opaque
-    float metallic = 0;            ///< 0 dielectric to 1 metal
-    float roughness = 0.5f;        ///< perceptual, 0 to 1; alpha = roughness^2
-    Vec3 emissive{0, 0, 0};        ///< emitted radiance, strength included
-    float normal_scale = 1;        ///< of the normal texture
-    float occlusion_strength = 1;  ///< of the occlusion texture, 0 to 1
+    float opacity = 1;                  ///< 0 transparent to 1 opaque
+    float metallic = 0;                 ///< 0 dielectric to 1 metal
+    float roughness = 0.5f;             ///< perceptual, 0 to 1; alpha = roughness^2
+    Vec3 emissive{0, 0, 0};             ///< emitted radiance, strength included
+    float normal_scale = 1;             ///< of the normal texture
+    float occlusion_strength = 1;       ///< of the occlusion texture, 0 to 1
     /// Automatic: blend where the opacity or the alpha of a vertex is below 1, mask where there is an opacity
     /// texture alone, else opaque.
     Auto<AlphaMode> alpha_mode;

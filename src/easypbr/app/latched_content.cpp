@@ -55,8 +55,8 @@ void LatchedContent::lower_ground(const Settings& settings, ResolvedSettings& re
     auto& ground = resolved.settings.ground;
     if (ground.mode == GroundMode::none || given.is_pinned() || !given.value() || placed_bounds_.isEmpty())
         return;
-    ground.height = std::min(ground.height,
-                             detail::ground_below(placed_bounds_, parse_up(resolved.settings.camera.up)));
+    ground.height =
+        std::min(ground.height, detail::ground_below(placed_bounds_, parse_up(resolved.settings.camera.up)));
 }
 
 void LatchedContent::bring_near_plane(const Settings& settings, ResolvedSettings& resolved) {
@@ -67,7 +67,8 @@ void LatchedContent::bring_near_plane(const Settings& settings, ResolvedSettings
     const Vec3d forward = -camera.T_world_cam.linear().col(2);
     double nearest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 8; ++i)
-        nearest = std::min(nearest, forward.dot(placed_bounds_.corner(Box3d::CornerType(i)) - camera.position()));
+        nearest =
+            std::min(nearest, forward.dot(placed_bounds_.corner(Box3d::CornerType(i)) - camera.position()));
     const double distance = (resolved.settings.camera.target - resolved.settings.camera.position).norm();
     camera.near = std::min(camera.near, detail::near_plane(nearest, distance));
     camera.far = std::max(camera.far, 2 * camera.near);

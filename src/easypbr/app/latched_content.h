@@ -37,7 +37,7 @@ class LatchedContent {
     bool has_new_names(const SceneSnapshot& scene) const;
 
     std::set<std::string> names_;
-    Box3d bounds_;                ///< of the content of these names, when it was kept
+    Box3d bounds_;                     ///< of the content of these names, when it was kept
     std::vector<Placed> placed_;       ///< content of the image before
     Box3d placed_bounds_;              ///< likewise
     std::vector<Placed> near_placed_;  ///< content that the near plane was inferred for

@@ -54,11 +54,11 @@ size_t LensMap::nearest(size_t pixel) const {
     return size_t(y) * size_t(drawn_size.x()) + size_t(x);
 }
 
-Vec2d LensMap::drawn_slope(size_t drawn) const {
-    const Intrinsics& k = *this->drawn.intrinsics;
+Vec2d LensMap::drawn_slope(size_t pixel) const {
+    const Intrinsics& k = *drawn.intrinsics;
     const auto width = size_t(drawn_size.x());
-    const size_t row = drawn / width;
-    return {(double(drawn % width) - k.cx) / k.fx, (double(row) - k.cy) / k.fy};
+    const size_t row = pixel / width;
+    return {(double(pixel % width) - k.cx) / k.fx, (double(row) - k.cy) / k.fy};
 }
 
 LensMap lens_map(const Camera& camera, Vec2i size) {

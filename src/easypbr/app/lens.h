@@ -22,7 +22,7 @@ struct LensMap {
     /// Place of the nearest drawn pixel, row by row.
     size_t nearest(size_t pixel) const;
     /// x/z and y/z of the ray through the middle of a drawn pixel. Not of an identity.
-    Vec2d drawn_slope(size_t drawn) const;
+    Vec2d drawn_slope(size_t pixel) const;
 };
 
 /// The map of a camera for a picture of this size. Throws ArgumentError where the lens has no inverse

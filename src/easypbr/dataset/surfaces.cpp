@@ -11,8 +11,8 @@
 namespace easypbr::dataset {
 namespace {
 
-/// How far the hit of the drawn pixel's ray may lie from the drawn depth, as a part of it: beyond, the face is
-/// seen edge-on or the pixel only touches it.
+/// How far the hit of the drawn pixel's ray may lie from the drawn depth, as a part of it: beyond, the face
+/// is seen edge-on or the pixel only touches it.
 constexpr double relative_depth_tolerance = 0.01;
 
 struct Ray {
@@ -177,8 +177,7 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
         s.is_face[i] = frame.is_face[drawn];
         if (!s.covered(i)) return;
         const double depth = frame.depth[drawn];
-        if (s.on_face(i))
-            return meet_face(s, i, T_cv_mesh[s.object[i] - 1], drawn_pixel(lens, drawn, depth));
+        if (s.on_face(i)) return meet_face(s, i, T_cv_mesh[s.object[i] - 1], drawn_pixel(lens, drawn, depth));
         const Ray ray = ray_of(s, i);
         s.position[i] = Vec3d(ray.origin + depth * ray.direction).cast<float>();
     });

@@ -125,9 +125,9 @@ Mesh estimate_surfels(const Mesh& mesh, const NeighborhoodOptions& options, bool
     const auto data = mesh.snapshot();
     const Neighborhoods neighborhoods = neighborhoods_of("estimate_surfels", *data, options);
     const bool has_normals = keep_normals && !data->N.empty();
-    const std::vector<Vec3> normals =
-        has_normals ? given_normals(data->N, neighborhoods)
-                    : plane_normals(neighborhoods, relative_to(data->offset, options));
+    const std::vector<Vec3> normals = has_normals
+                                          ? given_normals(data->N, neighborhoods)
+                                          : plane_normals(neighborhoods, relative_to(data->offset, options));
     std::vector<geometry::SurfelAxes> axes(neighborhoods.count());
     parallel_chunks(axes.size(), surfel_grain, [&](size_t begin, size_t end) {
         std::vector<Vec3d> steps;

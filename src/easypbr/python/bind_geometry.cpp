@@ -74,7 +74,8 @@ void bind_placing(MeshClass& mesh) {
                 return released([&] { return transformed(m, affine); });
             },
             nb::arg("T"),
-            "A new mesh with vertices, offset included, transformed by T (4 x 4), and normals, winding order, "
+            "A new mesh with vertices, offset included, transformed by T (4 x 4), and normals, winding "
+            "order, "
             "tangents and children with them. T_parent_mesh is kept.")
         .def(
             "center", [](const Mesh& m) { return released([&] { return centered(m); }); },
@@ -96,7 +97,8 @@ void bind_placing(MeshClass& mesh) {
              "the scene's frame.")
         .def("oriented_bounding_box", oriented_box,
              nb::sig("def oriented_bounding_box(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
-             "A small oriented bounding box: its 4 x 4 pose (centre and axes; the offset of the mesh included) "
+             "A small oriented bounding box: its 4 x 4 pose (centre and axes; the offset of the mesh "
+             "included) "
              "and its sizes along the axes, in descending order.");
 }
 

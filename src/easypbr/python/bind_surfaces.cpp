@@ -65,7 +65,8 @@ void bind_surfaces(nb::module_&) {
              nb::sig("def closest_points(self, queries: numpy.typing.ArrayLike) -> tuple[numpy.ndarray, "
                      "numpy.ndarray, numpy.ndarray]"),
              "For each query the distance to the surface, the nearest face, and the nearest point on it; the "
-             "nearest vertex for a mesh without faces. Queries and points are in the mesh's own frame, its offset "
+             "nearest vertex for a mesh without faces. Queries and points are in the mesh's own frame, its "
+             "offset "
              "included.")
         .def("distance_to", distance_to, nb::arg("other"), nb::arg("samples") = 100000, nb::arg("seed") = 0,
              "One-sided distances of this surface to the other: a dict of max (of vertices and samples), "

@@ -34,8 +34,8 @@ INLINE vbool set_covered(const PointBatch& b, const vec2& at, vfloat radius, vfl
         vbool is_covered = kept && is_small && x <= x1 && y <= y1 && (vbool(!b.round) || within || own) &&
                            x >= left && x < right && y >= top && y < bottom;
         if (b.seen && any_lane(is_covered))
-            is_covered =
-                is_covered && seen_at(b.seen, select(is_covered, (y - top) * width + x - left, vint(0))) <= bits;
+            is_covered = is_covered &&
+                         seen_at(b.seen, select(is_covered, (y - top) * width + x - left, vint(0))) <= bits;
         covered |= select(is_covered, 1 << i, 0);
     }
     covered = select(is_small, covered, vint(-1));
