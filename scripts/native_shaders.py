@@ -29,6 +29,7 @@ ASSIGNMENTS = {"=", "+=", "-=", "*=", "/=", "&=", "|=", "^=", "<<=", ">>="}
 CLOSING = {"(": ")", "[": "]", "{": "}"}
 COMPONENTS = {"r": "x", "g": "y", "b": "z", "a": "w"}
 TYPES = {"float": "vfloat", "uint": "vuint", "bool": "vbool"}
+NATIVE_FUNCTIONS = ("any_lane(", "layer_bounds(")  # macros for the driver
 INTERPOLATIONS = {"flat", "smooth", "noperspective"}
 UNIFORM_TYPES = {"float": "float", "int": "int", "bool": "bool", "mat3": "mat3",
                  "vec2": "uni::vec2", "vec3": "uni::vec3", "vec4": "uni::vec4"}  # fmt: skip
@@ -67,7 +68,7 @@ class Text:
                 lines.append(self.read(words[1].strip('"')))
             elif directive == "#feature":
                 self.features.append((words[1], words[2]))
-            elif directive == "#define" and words[1].startswith("any_lane("):
+            elif directive == "#define" and words[1].startswith(NATIVE_FUNCTIONS):
                 continue
             elif directive:
                 raise ShaderError(f"{name}: {line}")

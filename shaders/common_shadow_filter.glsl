@@ -52,6 +52,29 @@ vec2 next_direction(vec2 direction) {
     return vec2(cosine * direction.x - sine * direction.y, sine * direction.x + cosine * direction.y);
 }
 
+// What the plane changes by between a point and the texels around it, with roundings.
+float plane_margin(Receiver r) { return dot(abs(r.slope), vec2(1.5 / u_shadow_resolution)) + 1e-6 * abs(r.depth); }
+
+// No caster within the cone between a point and the light is nearer to the light; `search` is the cone's widest radius, in
+// map coordinates. The nearest caster bounds the part of the cone that can hold any, which is narrower then.
+float nearest_caster(Receiver r, vec2 search, bool needed) {
+    vec2 least = vec2(2.0 / u_shadow_resolution);  // the texels around the point
+    float nearest = layer_bounds(u_shadow_maps, r.at, max(search, least), needed).y;
+    for (int i = 0; i < 2; ++i) {
+        vec2 within = min(search, r.light * max(nearest - r.depth, 0.0));
+        nearest = layer_bounds(u_shadow_maps, r.at, max(within, least), needed).y;
+    }
+    return nearest;
+}
+
+// Whether casters hide the light at all texels that the filter looks at.
+bool hides_all(Receiver r, vec2 radius, float height, bool needed) {
+    float texel = 1.0 / u_shadow_resolution;
+    float farthest = layer_bounds(u_shadow_maps, r.at, radius + 2.0 * texel, needed).x;
+    float plane = dot(abs(r.slope), radius);
+    return farthest > r.depth + max(0.5 * height, plane) + 2.0 * plane_margin(r);
+}
+
 // Percentage-closer soft shadows (Fernando 2005): the mean depth of what is in the light's way gives the size of the
 // penumbra. A texel is in the way when it lies in the cone between the point and the light, which in map coordinates
 // and depth is a cone again, so that neighbours of the point on its own surface are not taken for casters.
@@ -61,17 +84,20 @@ float lit_soft(Receiver r, bool needed) {
     vec2 first_direction = vec2(cos(turn), sin(turn)), direction = first_direction;
     float reach = min(r.reach, widest / max(r.light.x, r.light.y));
     vec2 search = r.light * reach;
-    // The texels around the point are looked at in any case: the cone is narrower than they are where casters are near.
+    bool searches = needed && reach > 0.0;
+    float nearest = nearest_caster(r, search, needed);
+    if (!any_lane(needed && nearest >= r.depth - plane_margin(r))) return 1.0;
+    // The texels around the point are looked at as well: the cone is narrower than they are where casters are near.
     vec2 corner = floor(r.at.xy * u_shadow_resolution - 0.5) + 1.0;
     float plane = r.depth + dot(r.slope, corner * texel - r.at.xy);
     vec4 casters = textureGather(u_shadow_maps, vec3(corner * texel, r.at.z));
     vec4 blocks = vec4(greaterThan(casters, texel_planes(plane, r.slope * texel)));
     float sum = dot(blocks, casters), count = dot(blocks, vec4(1.0));
-    bool searches = needed && reach > 0.0;
     int taps = any_lane(searches) ? u_soft_taps : 0;
     for (int i = 0; i < taps; ++i) {
         // Denser towards the middle: casters near the point are seen in the narrow part of the cone only.
         float rho = (float(i) + 0.5) / float(u_soft_taps);
+        if (!any_lane(searches && r.depth + rho * reach <= nearest)) break;
         vec2 at = r.at.xy + search * (rho * direction);
         direction = next_direction(direction);
         at = (floor(at * u_shadow_resolution) + 0.5) * texel;
@@ -84,7 +110,8 @@ float lit_soft(Receiver r, bool needed) {
     float height = sum / max(count, 1.0) - r.depth;  // of the casters over the point
     vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
     float lit = 0.0;
-    taps = any_lane(needed && count > 0.0) ? u_soft_taps : 0;
+    bool partly = needed && count > 0.0 && !hides_all(r, radius, height, needed && count > 0.0);
+    taps = any_lane(partly) ? u_soft_taps : 0;
     direction = first_direction;
     for (int i = 0; i < taps; ++i) {
         float rho = sqrt((float(i) + 0.5) / float(u_soft_taps));

@@ -5,6 +5,7 @@
 #include "common_camera.glsl"
 #include "common_encoding.glsl"
 #include "common_extension.glsl"
+#include "common_lanes.glsl"
 #include "common_lights.glsl"
 #include "common_surface_kind.glsl"
 
@@ -30,15 +31,16 @@ vec3 direct(Light light, Surface s) {
     return arrives * scattered(l, s);
 }
 
-// Part of a light with shadow maps that reaches a surface, whose own normal is `face`; `light` is what would be seen of it.
-vec3 shadow_on(int index, vec3 light, Surface s, vec3 face) {
-    bool needed = any(greaterThan(light, vec3(0.0)));
+// Part of a light with shadow maps that reaches a surface, whose own normal is `face`; `light` is what would be seen of it,
+// `lit` whether the surface is lit at all.
+vec3 shadow_on(int index, vec3 light, Surface s, vec3 face, bool lit) {
+    bool needed = lit && any(greaterThan(light, vec3(0.0)));
     if (has_shadow_cubes && index >= u_single_lights) return shadow_cube(index - u_plain_lights, s.position, face, needed);
     return shadow_single(index - u_plain_lights, s.position, face, needed);
 }
 
 // The lights of the block; `view_p` is the surface's position in view space.
-vec3 light_of_block(Surface s, vec3 view_p) {
+vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
     vec3 face = s.normal, radiance = vec3(0.0);
     if (has_shadows) {
         vec3 flat_normal = u_world_from_view * face_normal(gl_FragCoord.xy, view_p);
@@ -47,7 +49,7 @@ vec3 light_of_block(Surface s, vec3 view_p) {
     }
     for (int i = 0; i < u_block_lights; ++i) {
         vec3 light = direct(u_lights[i], s);
-        if (has_shadows && i >= u_plain_lights) light *= shadow_on(i, light, s, face);
+        if (has_shadows && i >= u_plain_lights) light *= shadow_on(i, light, s, face, lit);
         radiance += light;
     }
     return radiance;
@@ -66,6 +68,12 @@ void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     vec3 albedo = textureLod(u_albedo, uv, 0.0).rgb;
     vec4 material = textureLod(u_material, uv, 0.0);
+    bool lit = is_lit(material.w);
+    vec3 emission = has_emission ? texelFetch(u_emission, ivec2(gl_FragCoord.xy), 0).rgb : vec3(0.0);
+    if (!any_lane(lit)) {
+        write_light(emission, 1.0, 1.0);
+        return;
+    }
     vec3 view_p = view_position(gl_FragCoord.xy, textureLod(u_depth_target, uv, 0.0).r);
 
     Surface s;
@@ -84,14 +92,13 @@ void main() {
     vec3 radiance = has_environment ? environment_light(s, uv, material.z) : vec3(0.0);
     float coverage = 1.0;
     if (sees_behind && u_first_block > 0.5) {
-        vec4 light = is_lit(material.w) ? transmitted(s) : vec4(0.0, 0.0, 0.0, 1.0);
+        vec4 light = lit ? transmitted(s) : vec4(0.0, 0.0, 0.0, 1.0);
         radiance += light.rgb;
         coverage = light.a;
     }
     s.roughness = light_roughness;
     s.alpha = light_roughness * light_roughness;
-    radiance += light_of_block(s, view_p);
-    float keep = is_lit(material.w) && u_first_block > 0.5 ? kept_below(s) : 1.0;
-    vec3 emission = has_emission ? keep * texelFetch(u_emission, ivec2(gl_FragCoord.xy), 0).rgb : vec3(0.0);
-    write_light((is_lit(material.w) ? radiance : vec3(0.0)) + emission, coverage, keep);
+    radiance += light_of_block(s, view_p, lit);
+    float keep = lit && u_first_block > 0.5 ? kept_below(s) : 1.0;
+    write_light((lit ? radiance : vec3(0.0)) + keep * emission, coverage, keep);
 }

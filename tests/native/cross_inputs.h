@@ -320,6 +320,18 @@ class Filler {
     void operator()(std::string_view, Layers& to) {
         to.size = shadow_size;
         to.data = run_.floats(shadow_size * shadow_size * shadow_layers);
+        // A layer is one block.
+        static_assert(shadow_size <= Layers::block_size);
+        const float* layer = to.data;
+        auto* const least = run_.array<float>(shadow_layers);
+        auto* const largest = run_.array<float>(shadow_layers);
+        for (int i = 0; i < shadow_layers; ++i, layer += shadow_size * shadow_size) {
+            const auto [low, high] = std::minmax_element(layer, layer + shadow_size * shadow_size);
+            least[i] = *low;
+            largest[i] = *high;
+        }
+        to.least = least;
+        to.largest = largest;
     }
     void operator()(std::string_view name, Layers4& to) {
         const float sign = name == "u_tint_moment" ? -1 : 1;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -162,6 +163,92 @@ TEST(Samplers, GathersFourTexelsOfALayer) {
                 EXPECT_EQ(found.w.v[k], texel(x - 1, y - 1)) << x << ' ' << y;
             }
         }
+}
+
+/// Two layers of random texels, of 3 by 3 blocks that are not all whole.
+class LayerBounds : public testing::Test {
+  protected:
+    static constexpr int size = 40, blocks = Layers::blocks_of(size), most = 7;
+
+    LayerBounds() {
+        for (float& texel : texels_) texel = random(0, 1);
+        const auto block_of = [](int layer, int x, int y) {
+            return size_t((layer * blocks + y / Layers::block_size) * blocks + x / Layers::block_size);
+        };
+        for (int layer = 0; layer < 2; ++layer)
+            for (int y = 0; y < size; ++y)
+                for (int x = 0; x < size; ++x) {
+                    float &least = least_[block_of(layer, x, y)], &largest = largest_[block_of(layer, x, y)];
+                    least = std::min(least, texel(layer, x, y));
+                    largest = std::max(largest, texel(layer, x, y));
+                }
+    }
+    float random(float low, float high) { return std::uniform_real_distribution(low, high)(generator_); }
+    float texel(int layer, int x, int y) const { return texels_[size_t((layer * size + y) * size + x)]; }
+    Layers layers() const { return {texels_.data(), size, least_.data(), largest_.data()}; }
+
+  private:
+    std::mt19937 generator_{3};
+    std::vector<float> texels_ = std::vector<float>(2 * size * size);
+    std::vector<float> least_ = std::vector<float>(2 * blocks * blocks, 2.0f),
+                       largest_ = std::vector<float>(2 * blocks * blocks, -2.0f);
+};
+
+TEST_F(LayerBounds, AreThoseOfTheBlocksAroundThePlacesThatAreNeeded) {
+    for (int trial = 0; trial < 200; ++trial) {
+        const float spread = trial % 2 == 0 ? 0.2f : 1.2f;
+        const vec2 middle(random(0, 1), random(0, 1));
+        vec3 place(vfloat(0.0f), vfloat(0.0f), vfloat(float(trial % 2)));
+        vec2 distance;
+        vbool needed = false;
+        for (int k = 0; k < lanes; ++k) {
+            place.x.v[k] = middle.x.v[0] + random(-spread, spread);
+            place.y.v[k] = middle.y.v[0] + random(-spread, spread);
+            distance.x.v[k] = random(0, 0.2f);
+            distance.y.v[k] = random(0, 0.2f);
+            needed.v[k] = k == trial % lanes || random(0, 1) < 0.3f ? -1 : 0;
+        }
+        // The rectangle around all of them, and a texel to each side; beyond the borders, their texels.
+        const auto column = [](float at) { return std::clamp(int(std::floor(at * size)), 0, size - 1); };
+        int left = size, right = 0, top = size, bottom = 0;
+        for (int k = 0; k < lanes; ++k) {
+            if (!needed.v[k]) continue;
+            left = std::min(left, column(place.x.v[k] - distance.x.v[k] - 1.0f / size));
+            right = std::max(right, column(place.x.v[k] + distance.x.v[k] + 1.0f / size));
+            top = std::min(top, column(place.y.v[k] - distance.y.v[k] - 1.0f / size));
+            bottom = std::max(bottom, column(place.y.v[k] + distance.y.v[k] + 1.0f / size));
+        }
+        const auto whole = [](int& first, int& last) {
+            first -= first % Layers::block_size;
+            last = std::min(size, last - last % Layers::block_size + Layers::block_size);
+        };
+        whole(left, right);
+        whole(top, bottom);
+        float least = 2, largest = -2;
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) {
+                least = std::min(least, texel(trial % 2, x, y));
+                largest = std::max(largest, texel(trial % 2, x, y));
+            }
+        const vec2 bounds = layer_bounds(layers(), place, distance, needed);
+        EXPECT_EQ(bounds.x.v[0], least) << trial;
+        EXPECT_EQ(bounds.y.v[lanes - 1], largest) << trial;
+    }
+}
+
+TEST_F(LayerBounds, AreWideWhereTheyAreNotKnown) {
+    vec3 place(vfloat(0.5f), vfloat(0.5f), vfloat(0.0f));
+    const vec2 distance(vfloat(0.1f), vfloat(0.1f));
+    const auto expect_wide = [](const vec2& bounds) {
+        EXPECT_LT(bounds.x.v[0], -1e37f);
+        EXPECT_GT(bounds.y.v[0], 1e37f);
+    };
+    Layers without = layers();
+    without.least = without.largest = nullptr;
+    expect_wide(layer_bounds(without, place, distance, true));
+    expect_wide(layer_bounds(layers(), place, distance, false));
+    place.z.v[lanes - 1] = 1;  // lanes of two layers
+    expect_wide(layer_bounds(layers(), place, distance, true));
 }
 
 class Pictures : public testing::Test {

@@ -69,8 +69,14 @@ struct MipPicture {
 
 /// Square pictures of one float a texel, one after the other.
 struct Layers {
+    static constexpr int block_size = 16;
+    static constexpr int blocks_of(int size) { return (size + block_size - 1) / block_size; }
+
     const float* data = nullptr;
     int size = 0;
+    /// The least and the largest value of each block of block_size by block_size texels, row by row of
+    /// blocks, layer by layer; null where they are not known.
+    const float *least = nullptr, *largest = nullptr;
 };
 
 /// The same of four floats a texel.

@@ -36,23 +36,6 @@ INLINE unsigned lane_bits(vbool a) {
 #endif
 }
 
-INLINE int least_of(vint a) {
-    int least = a.v[0];
-    for (int k = 1; k < lanes; ++k) least = a.v[k] < least ? a.v[k] : least;
-    return least;
-}
-INLINE int largest_of(vint a) {
-    int largest = a.v[0];
-    for (int k = 1; k < lanes; ++k) largest = a.v[k] > largest ? a.v[k] : largest;
-    return largest;
-}
-
-INLINE float largest_of(vfloat a) {
-    float largest = a.v[0];
-    for (int k = 1; k < lanes; ++k) largest = a.v[k] > largest ? a.v[k] : largest;
-    return largest;
-}
-
 /// Projects the vertices as TriangleRaster does, to the same bits. False where one has to be clipped.
 inline bool project_cluster(const ClusterFaces& c, ClusterScreen& screen) {
     const auto& m = c.clip_from_mesh;

@@ -324,6 +324,9 @@ class TextureReader {
     int alike_count_ = 0;
 };
 
+inline constexpr int block_bits = 4;
+static_assert(Layers::block_size == 1 << block_bits);
+
 /// Nearest, clamped to the borders; z is the layer.
 INLINE vfloat layer_texel(const Layers& s, vint x, vint y, vint layer) {
     const vint index = (layer * s.size + clamp(y, 0, s.size - 1)) * s.size + clamp(x, 0, s.size - 1);
@@ -354,6 +357,35 @@ INLINE vec4 textureGather(const Layers& s, const vec3& place) {
     }
     return {layer_texel(s, x, y + 1, layer), layer_texel(s, x + 1, y + 1, layer),
             layer_texel(s, x + 1, y, layer), layer_texel(s, x, y, layer)};
+}
+
+/// See shaders/common_lanes.glsl. Where all lanes look at one layer, of the blocks that their places and a
+/// texel more lie in: bounds that do not depend on which lanes are shaded together are no more than that.
+INLINE vec2 layer_bounds(const Layers& s, const vec3& place, const vec2& distance, vbool needed) {
+    const vec2 unknown(-1e38f, 1e38f);
+    const float size = float(s.size);
+    const vint layer = to_int(place.z + 0.5f);
+    const int first = largest_of(select(needed, layer, vint(-1)));
+    if (!s.least || first < 0 || any_lane(needed && layer != first)) return unknown;
+    const auto block = [&](vfloat at) __attribute__((always_inline)) {
+        return clamp(to_int(floor(at * size)), 0, s.size - 1) >> block_bits;
+    };
+    const float texel = 1.0f / size;
+    const int blocks = Layers::blocks_of(s.size);
+    const vint outside = blocks;
+    const int left = least_of(select(needed, block(place.x - distance.x - texel), outside)),
+              right = largest_of(select(needed, block(place.x + distance.x + texel), vint(-1))),
+              top = least_of(select(needed, block(place.y - distance.y - texel), outside)),
+              bottom = largest_of(select(needed, block(place.y + distance.y + texel), vint(-1)));
+    float least = 1e38f, largest = -1e38f;
+    for (int y = top; y <= bottom; ++y) {
+        const size_t row = (size_t(first) * size_t(blocks) + size_t(y)) * size_t(blocks);
+        for (int x = left; x <= right; ++x) {
+            least = s.least[row + size_t(x)] < least ? s.least[row + size_t(x)] : least;
+            largest = s.largest[row + size_t(x)] > largest ? s.largest[row + size_t(x)] : largest;
+        }
+    }
+    return {least, largest};
 }
 
 /// The first layer is 0; the texel must be inside.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/hash.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/scene/light_falloff.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/resolve.h"
@@ -134,6 +135,8 @@ void ShadowMaps::set_resolution(int resolution) {
     tint_framebuffers_.clear();
     maps_ = gl::Texture();
     host_maps_.clear();
+    least_.clear();
+    largest_.clear();
     host_absorption_.clear();
     host_moment_.clear();
     tints_ = {};
@@ -197,7 +200,8 @@ LightBlock ShadowMaps::next_block() {
     }
     block.resolution = resolution_;
     block.maps = &maps_;
-    block.host_maps = {.data = host_maps_.data(), .size = resolution_};
+    block.host_maps = {
+        .data = host_maps_.data(), .size = resolution_, .least = least_.data(), .largest = largest_.data()};
     if (tints_) block.tints = &tints_;
     if (!host_absorption_.empty()) {
         block.host_absorption = {.data = host_absorption_.data(), .size = resolution_};
@@ -253,10 +257,29 @@ std::span<float> ShadowMaps::host_layer(std::vector<float>& values, int layer, i
 
 void ShadowMaps::draw_in_host_memory(const ShadowView& view, int layer) {
     pass_.draw(view, *list_, resolution_, host_layer(host_maps_, layer, 1));
+    note_bounds(layer);
     if (host_absorption_.empty()) return;
     TintLayer tints(host_layer(host_absorption_, layer, 4), host_layer(host_moment_, layer, 4), resolution_,
                     no_shadow_depth);
     pass_.draw_tints(view, *list_, tints);
+}
+
+void ShadowMaps::note_bounds(int layer) {
+    constexpr int side = native::Layers::block_size;
+    using Map = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::Map<const Map> map(host_layer(host_maps_, layer, 1).data(), resolution_, resolution_);
+    const int blocks = native::Layers::blocks_of(resolution_);
+    const size_t first = size_t(layer) * size_t(blocks) * size_t(blocks);
+    parallel_for(size_t(blocks), 4, [&](size_t row) {
+        const int y = int(row) * side, height = std::min(side, resolution_ - y);
+        for (int column = 0; column < blocks; ++column) {
+            const int x = column * side, width = std::min(side, resolution_ - x);
+            const auto texels = map.block(y, x, height, width);
+            const size_t at = first + row * size_t(blocks) + size_t(column);
+            least_[at] = texels.minCoeff();
+            largest_[at] = texels.maxCoeff();
+        }
+    });
 }
 
 int ShadowMaps::allocate(int layers) {
@@ -310,6 +333,9 @@ bool ShadowMaps::grow(int layers) {
     taken_.resize(size_t(after), false);
     if (in_host_memory_) {
         host_maps_.resize(size_t(after) * size_t(resolution_) * size_t(resolution_));
+        const auto blocks = size_t(native::Layers::blocks_of(resolution_));
+        least_.resize(size_t(after) * blocks * blocks);
+        largest_.resize(size_t(after) * blocks * blocks);
         prepare_tints();
         return true;
     }

@@ -123,6 +123,8 @@ class ShadowMaps {
     void draw_in_host_memory(const ShadowView& view, int layer);
     /// A layer of something in host memory, so many floats a texel.
     std::span<float> host_layer(std::vector<float>& values, int layer, int channels) const;
+    /// Finds the bounds of the blocks of a layer, see native::Layers.
+    void note_bounds(int layer);
     /// Keeps tints beside the maps only while something needs them.
     void prepare_tints();
     void take(int first, int layers, bool taken);
@@ -132,6 +134,7 @@ class ShadowMaps {
     bool in_host_memory_ = false;
     gl::Texture maps_;
     std::vector<float> host_maps_;
+    std::vector<float> least_, largest_;  ///< of the blocks of host_maps_
     std::vector<float> host_absorption_, host_moment_;  ///< tints_ in host memory
     ShadowTints tints_;                                 ///< beside the maps while some casters weaken light
     std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
