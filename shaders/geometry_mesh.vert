@@ -28,5 +28,7 @@ void main() {
     if (needs_position()) v_position = u_world_from_view * (u_view_from_mesh * vec4(a_position, 1.0)).xyz;
     if (has_vertex_colors) v_color = vec4(srgb_decode(a_color.rgb), a_color.a);
     if (has_uv) v_uv = a_uv;
-    if (has_tangents) v_tangent = vec4(u_tangent_from_mesh * a_tangent.xyz, a_tangent.w);
+    // A mirrored mesh has mirrored textures.
+    float handedness = determinant(u_tangent_from_mesh) < 0.0 ? -1.0 : 1.0;
+    if (has_tangents) v_tangent = vec4(u_tangent_from_mesh * a_tangent.xyz, handedness * a_tangent.w);
 }

@@ -36,6 +36,7 @@ float pixels_per_unit(float distance) {
 
 struct Exit {
     vec3 position, direction;  // where the ray goes on, relative to the camera
+    vec3 inside;               // its direction within the volume
     float path;                // length within the volume
 };
 
@@ -44,6 +45,7 @@ Exit through_volume(Surface s, vec3 normal, float ior) {
     Extension e = s.extension;
     Exit x;
     vec3 inside = refract(-s.view, normal, 1.0 / ior);
+    x.inside = inside;
     x.path = e.thickness;
     x.position = s.position + inside * x.path;
     x.direction = -s.view;  // a slab's other side, unless the true one is known
@@ -85,8 +87,9 @@ float gap_at(vec3 p) {
 // that what stands on a floor sees it.
 bool is_met(vec3 p, float gap) { return gap <= 0.001 * p.z; }
 
-// The opaque surface that a ray meets, as pixel and distance; z is 0 when it meets none, and where it is not `needed`.
-vec3 march(vec3 origin, vec3 direction, bool needed) {
+// The opaque surface that a ray meets within a length, as pixel and distance; z is 0 when it meets none, and where it is not
+// `needed`. w is 1 within the picture: beyond its border the surface that was last passed is taken to go on.
+vec4 march(vec3 origin, vec3 direction, float reach, bool needed) {
     const int steps = 24;
     vec3 before = projected(origin), low = before, high = before, hit = vec3(0.0);
     float gap_before = gap_at(before);
@@ -95,7 +98,7 @@ vec3 march(vec3 origin, vec3 direction, bool needed) {
         if (!any_lane(going)) break;
         // Steps grow with the distance, so that what is near is not stepped over.
         float part = (float(i) - 1.0 + u_tap_offset) / float(steps);
-        vec3 p = projected(origin + direction * (u_behind_reach * part * part));
+        vec3 p = projected(origin + direction * (reach * part * part));
         bool leaves = going && (p.z <= 0.0 || !on_screen(p.xy));
         if (any_lane(leaves)) {
             // What the ray was in front of at the picture's border is taken to go on beyond it.
@@ -115,7 +118,7 @@ vec3 march(vec3 origin, vec3 direction, bool needed) {
         gap_before = gap;
     }
     bool has_met = needed && !unmet;
-    if (!any_lane(has_met)) return hit;
+    if (!any_lane(has_met)) return vec4(hit, 0.0);
     // Between the last two points, by the distances to the surface.
     float span = abs(high.z - low.z);
     for (int k = 0; k < 5; ++k) {
@@ -126,7 +129,8 @@ vec3 march(vec3 origin, vec3 direction, bool needed) {
     }
     // Far in front of the ray: it passes behind that surface, which is none of its own.
     bool is_own = gap_at(high) > -0.25 * span - 0.02 * high.z;
-    return has_met ? (is_own ? high : vec3(0.0)) : hit;
+    vec4 met = is_own ? vec4(high, 1.0) : vec4(0.0);
+    return has_met ? met : vec4(hit, 0.0);
 }
 
 vec4 picture_at(vec2 pixel, float radius) {
@@ -141,23 +145,31 @@ vec3 scattered_direction(vec3 direction, float alpha) {
     return normalize(direction + 2.0 * alpha * (u_lobe_sample.x * a + u_lobe_sample.y * b));
 }
 
-// Radiance and coverage of what is seen along a ray that has left the surface.
-vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha) {
+// Radiance and coverage of what is seen along a ray that has left the surface, unless it has met something `within` it.
+vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha, vec4 within) {
     direction = scattered_direction(direction, alpha);
     float own = projected(origin).z;
     float d = textureLod(u_behind_depth, gl_FragCoord.xy / u_size, 0.0).r;
     vec3 hit = vec3(gl_FragCoord.xy, d > 0.0 ? distance_of(d) : 1e20 * own);
     vec2 turned = straight ? u_lobe_sample : vec2(0.0);
-    if (any_lane(!straight)) {
-        vec3 met = march(origin, direction, !straight);
-        hit = straight ? hit : met;
+    bool marches = !straight && within.w < 0.5;
+    if (any_lane(marches)) {
+        vec4 beyond = march(origin, direction, u_behind_reach, marches);
+        hit = marches ? beyond.xyz : hit;
     }
+    hit = within.w > 0.5 ? within.xyz : hit;
     float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(max(hit.z, 1e-20)), min(u_picture.w, 0.25 * u_reach));
     vec4 picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
     picture = hit.z > 0.0 ? picture : vec4(0.0);
     if (!has_environment) return picture;
     vec3 environment = u_env_intensity * prefiltered(direction, sqrt(alpha * u_lobe_share));
     return vec4(picture.rgb + (1.0 - picture.a) * environment, 1.0);
+}
+
+// Length of a ray within a volume as far as this distance along the optical axis.
+float length_to(float distance, vec3 from, Exit x) {
+    float axis = dot(x.inside, u_world_from_view * vec3(0.0, 0.0, -1.0));
+    return clamp((distance - projected(from).z) / max(axis, 0.1), 0.0, x.path);
 }
 
 struct Through {
@@ -173,15 +185,18 @@ Through through_surface(Surface s, float ior) {
     t.part = s.through * s.keep;
     vec3 position = s.position, direction = -s.view;
     bool is_volume = e.thickness > 0.0;
+    vec4 within = vec4(0.0);
     if (any_lane(is_volume)) {
         vec3 normal = dot(s.normal, s.view) > 0.0 ? s.normal : -s.normal;
         Exit x = through_volume(s, normal, ior);
+        within = march(s.position, x.inside, x.path, is_volume);
+        x.path = within.w > 0.5 ? length_to(within.z, s.position, x) : x.path;
         vec3 left = pow(max(e.transmittance, 1e-6), vec3(x.path / max(e.thickness, 1e-20)));
         t.part = is_volume ? t.part * left : t.part;
         position = is_volume ? x.position : position;
         direction = is_volume ? x.direction : direction;
     }
-    t.light = seen(position, direction, !is_volume || ior == 1.0, rough * rough);
+    t.light = seen(position, direction, !is_volume || ior == 1.0, rough * rough, within);
     return t;
 }
 

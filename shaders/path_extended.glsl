@@ -70,9 +70,8 @@ vec3 scattered_above(vec3 l, Surface s) {
 }
 
 // Light from a direction into the view: the BRDF, or what roughness spreads of the BTDF straight through, times the cosine.
-vec3 reflected(vec3 l, Surface s) {
+vec3 above_face(vec3 light, vec3 l, Surface s) {
     vec3 below = mirrored_at_face(l);
-    vec3 light = scattered_above(l, s) + scattered_above(below, s);
     vec3 spread = vec3(0.0);
     if (has_transmission) {
         vec2 dfg = dfg_at(s.n_dot_v, transmitted_roughness(s));
@@ -83,6 +82,12 @@ vec3 reflected(vec3 l, Surface s) {
     vec3 result = dot(l, v_face) > 0.0 ? light : spread;
     return is_inside() ? vec3(0.0) : result;
 }
+vec3 reflected(vec3 l, Surface s) {
+    return above_face(scattered_above(l, s) + scattered_above(mirrored_at_face(l), s), l, s);
+}
+
+// As that of path_plain.glsl.
+vec3 reflected_unmirrored(vec3 l, Surface s) { return above_face(scattered_above(l, s), l, s); }
 
 // Parts of the directions; the others are those of a cosine.
 struct Lobes {

@@ -38,7 +38,7 @@ void main() {
             c = from_area(u_lights[i], s, way);
         else {
             vec3 arrives = arriving(u_lights[i], v_position, l);
-            c = arrives * reflected(l, s);
+            c = arrives * reflected_unmirrored(l, s);
         }
         float weight = luminance(c);
         sum += weight;

@@ -14,11 +14,15 @@ Surface path_surface() {
 }
 
 // Light from a direction above the face into the view: the BRDF times the cosine.
-vec3 reflected(vec3 l, Surface s) {
-    vec3 light = scattered(l, s) + scattered(mirrored_at_face(l), s);
+vec3 above_face(vec3 light, vec3 l, Surface s) {
     if (catches_shadows) light = vec3(max(dot(s.normal, l), 0.0) * inverse_pi);
     return dot(l, v_face) > 0.0 ? light : vec3(0.0);
 }
+vec3 reflected(vec3 l, Surface s) { return above_face(scattered(l, s) + scattered(mirrored_at_face(l), s), l, s); }
+
+// Of a light without an area, without what is mirrored at the face: light of a single direction would show the faces where
+// interpolated normals turn away from it.
+vec3 reflected_unmirrored(vec3 l, Surface s) { return above_face(scattered(l, s), l, s); }
 
 // Which part of the directions is chosen by the specular lobe.
 float specular_part(Surface s) {

@@ -57,6 +57,36 @@ TEST(CaughtLight, OfADisc) {
     EXPECT_NEAR(alpha_of(session, 64), 0.5, 0.01);
 }
 
+/// The form factor of a square of this half side, facing the place below its middle, at a distance of 1.
+double form_factor_of_square(double half) {
+    const double root = std::sqrt(1 + half * half);
+    return 4 / pi * half / root * std::atan(half / root);
+}
+
+// A square lamp of 4 x 4 at a distance of 2, of which a square of 1 x 1 at a distance of 1 hides the middle
+// quarter, 2 x 2, with and without a sky (of no light to speak of). 0.01: the noise of 64 samples.
+TEST(CaughtLight, OfASquareLamp) {
+    for (const bool has_sky : {false, true}) {
+        Scene scene;
+        Mesh square = facing_square(0.5f);
+        square.set_T_parent_mesh(Eigen::Translation3d(0, 1 - height, 0) *
+                                 Eigen::Affine3d(Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())));
+        scene.show(square, "square");
+        Light lamp;
+        lamp.type = LightType::rectangle;
+        lamp.position = Vec3(0, float(2 - height), 0);
+        lamp.direction = Vec3(0, -1, 0);
+        lamp.size = Vec2(4, 4);
+        scene.set_light("lamp", lamp);
+        scene.set_environment(constant_environment(1e-4f));
+        app::Session session = session_at(scene, 0);
+        session.settings().environment.enabled = has_sky;
+        session.settings().camera.position = Vec3d(1.2, 0.9 - height, 0);  // below the lamp
+        EXPECT_NEAR(alpha_of(session, 64), form_factor_of_square(0.5) / form_factor_of_square(1), 0.01)
+            << has_sky;
+    }
+}
+
 // Of a place in the ball around the box, just outside of it, and far away, where a third of the directions
 // that are tried meets the ball, and one in four frames tries. 3 deviations of independent samples.
 TEST(CaughtLight, OfABallNearAndFar) {

@@ -185,6 +185,41 @@ TEST(Extensions, WithoutEffectTheyAreTheCoreModel) {
         ASSERT_NEAR(alone.pixels<float>()[i], beside.pixels<float>()[i], 2e-5);
 }
 
+/// Radiance of a square whose normals are bent, in its own frame, under light from a direction.
+float seen_of_bent(const Vec2& bent, bool is_mirrored, const Vec3& from, bool by_paths) {
+    Image normals(1, 1, 3, PixelType::u8);
+    for (int c = 0; c < 2; ++c) normals.at<uint8_t>(0, 0)[c] = uint8_t(std::lround(127.5f * (1 + bent[c])));
+    normals.at<uint8_t>(0, 0)[2] = uint8_t(std::lround(127.5f * (1 + std::sqrt(1 - bent.squaredNorm()))));
+    Material m;
+    m.roughness = 1;
+    m.normal_texture.image = std::make_shared<Image>(normals);
+    Mesh square = facing_square(1, m);
+    if (is_mirrored) square.set_T_parent_mesh(Eigen::Affine3d(Eigen::Scaling(Vec3d(-1, 1, 1))));
+    Scene scene;
+    scene.show(square, "square");
+    Light light;
+    light.type = LightType::directional;
+    light.direction = -from;
+    scene.set_light("light", light);
+    app::Session session = plain_session(scene, 8);
+    session.settings().path.enabled = by_paths;
+    look_from(session, Vec3d(0, 0, 4), 10);
+    return render_linear(session, by_paths ? 4 : 1).at<float>(4, 4)[0];
+}
+
+// A mesh that its pose mirrors from left to right shows what the mesh shows under mirrored light: its normal
+// textures are mirrored with it, and what they bend upwards stays so.
+TEST(Extensions, MirroredPosesMirrorNormalTextures) {
+    for (const bool by_paths : {false, true})
+        for (const Vec2& bent : {Vec2(0.5f, 0), Vec2(0, 0.5f), Vec2(0.3f, 0.4f)}) {
+            const Vec3 from = Vec3(0.4f, 0.5f, 0.8f).normalized(), mirrored(-from.x(), from.y(), from.z());
+            const float expected = seen_of_bent(bent, false, from, by_paths);
+            // 1e-3: normals have 16 bits.
+            EXPECT_NEAR(seen_of_bent(bent, true, mirrored, by_paths), expected, 1e-3 * expected);
+            EXPECT_GT(expected, 1.05f * seen_of_bent(-bent, false, from, by_paths));  // bending tells
+        }
+}
+
 // Drawn over everything else, with nothing else there, an extended surface looks as it does anyway.
 TEST(Extensions, StayWhatTheyAreInAnOverlay) {
     Scene scene;

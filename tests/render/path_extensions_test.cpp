@@ -1,6 +1,7 @@
 // Paths at surfaces with glTF's material extensions: closed forms, and the raster frame under a lamp.
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -290,6 +291,35 @@ TEST(PathExtensions, SlabAbsorbs) {
         const double left = std::pow(double(Vec3(0.8f, 0.5f, 0.2f)[c]), 2);
         EXPECT_NEAR(seen[c], slab_radiance(left), 0.004) << c;
     }
+}
+
+// Of balls within each other, each a quarter smaller, which do not bend light: each shell absorbs its own
+// part of the way, and the innermost ball that of its diameter. 0.004: the noise of 20736 paths, 4 deviations.
+TEST(PathExtensions, NestedVolumesAbsorbInTurn) {
+    Scene scene;
+    const Vec3 colors[] = {Vec3(0.9f, 0.8f, 1), Vec3(0.6f, 1, 0.9f), Vec3(1, 0.7f, 0.8f),
+                           Vec3(0.8f, 0.9f, 0.6f)};
+    Vec3 left = Vec3::Ones();
+    for (int i = 0; i < 4; ++i) {
+        Mesh ball = make_sphere(1 - 0.25 * i, 128);
+        ball.set_material(white([&](Material& m) {
+            m.transmission = m.thickness = m.ior = 1;
+            m.specular = 0;
+            m.roughness = 0;
+            m.attenuation_distance = 0.5f;
+            m.attenuation_color = colors[i];
+        }));
+        scene.show(ball, "ball " + std::to_string(i));
+        left.array() *= colors[i].array();  // twice a quarter of the way, or the diameter of 1/2
+    }
+    scene.set_environment(constant_environment(1));
+    app::Session session = traced(plain_session(scene, 9));
+    session.settings().environment.enabled = true;
+    look_from(session, Vec3d(0, 0, 2), 1);
+    const Image image = render_linear(session, 256);
+    Vec3 seen = Vec3::Zero();
+    for (int i = 0; i < 81; ++i) seen += Vec3(image.at<float>(i % 9, i / 9)) / 81;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], left[c], 0.004) << c;
 }
 
 /// Radiance that grows with the height of the direction.

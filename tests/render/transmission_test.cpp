@@ -105,6 +105,28 @@ TEST(Transmission, WhiteFurnace) {
     }
 }
 
+// A ball of half the size within a ball of glass is seen in its middle, and the glass absorbs on the way to
+// it alone. 0.01: the transmittance of the thickness has 8 bits.
+TEST(Transmission, WhatIsWithinIsSeen) {
+    const Vec3 color(0.5f, 0.1f, 0.2f), tint(0.25f, 0.5f, 1);
+    Scene scene;
+    Mesh within = make_sphere(0.5, 64);
+    within.set_material(glowing(color));
+    scene.show(within, "within");
+    scene.show(ball(glass([&](Material& m) {
+                   m.thickness = 1;
+                   m.attenuation_distance = 0.5f;
+                   m.attenuation_color = tint;
+               })),
+               "ball");
+    scene.set_environment(constant_environment(1));
+    app::Session session = session_of(scene, Vec3d(0, 0, 4));
+    session.settings().environment.enabled = true;
+    const Image image = render_linear(session);
+    const Vec3 seen(image.at<float>(size / 2, size / 2));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], 0.04 + 0.96 * color[c] * tint[c], 0.01) << c;
+}
+
 // What a volume absorbs on the way through it: Beer's law for the refracted chord of a sphere.
 TEST(Transmission, VolumesAbsorbAlongTheRefractedPath) {
     Scene scene;

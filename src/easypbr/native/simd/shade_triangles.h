@@ -62,7 +62,10 @@ INLINE void set_tangent(Shader& s, const VisibleTriangles& t, const Place* place
                     float(t.attributes.tangents[4 * corner + size_t(i)]) * (1.0f / 32767.0f);
         });
     const vec3 mean(seen.hit.mean(tangent, 0), seen.hit.mean(tangent, 1), seen.hit.mean(tangent, 2));
-    s.v_tangent = vec4(transformed(t.attributes.tangent_from_mesh, mean), seen.hit.mean(tangent, 3));
+    // A mirrored mesh has mirrored textures.
+    const float handedness = t.mirrored ? -1.0f : 1.0f;
+    s.v_tangent =
+        vec4(transformed(t.attributes.tangent_from_mesh, mean), handedness * seen.hit.mean(tangent, 3));
 }
 
 /// Everything that the shader interpolates.

@@ -154,7 +154,7 @@ void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& l
 void CatcherLight::add_samples(PathBatch& batch, const std::vector<float>& distances,
                                std::vector<CaughtLight>& light) const {
     if (batch.count == 0) return;
-    batch.find_starts(scene_->reach());
+    batch.find_starts();
     if (!lights_->empty()) add_lamps(batch, light);
     // Area lights count on directions that are distributed by the cosine.
     if (!sky_->empty() || lights_->has_areas()) add_skies(batch, distances, light);

@@ -48,8 +48,9 @@ struct PathState {
     uint32_t index = 0;     ///< of the radiance that the path adds to
     uint16_t bounces = 0;   ///< surfaces that have reflected it
     uint16_t passages = 0;  ///< surfaces that it has passed, or whose volume it has not left
-    /// Surfaces whose volumes the path is in, the innermost first; -1: none.
-    std::array<int, 2> volumes{-1, -1};
+    /// Surfaces whose volumes the path is in, the innermost first; -1: none. The outermost of more is
+    /// forgotten.
+    std::array<int, 4> volumes{-1, -1, -1, -1};
     Scattering scattered = Scattering::none;
     int8_t channel = all_channels;  ///< the only one that is left once a volume has dispersed the light
 };
@@ -118,6 +119,7 @@ struct PathBatch {
           normal(rounded_up(capacity)),
           face(rounded_up(capacity)),
           view(rounded_up(capacity)),
+          reach(rounded_up(capacity)),
           albedo(rounded_up(capacity)),
           parameters(rounded_up(capacity)),
           state(rounded_up(capacity)),
@@ -162,10 +164,11 @@ struct PathBatch {
     /// Sets where rays start that leave the places: as RayScene::off_surface(), along the face's normal and
     /// back along the path too, so that they are on the right side of other surfaces that meet this one
     /// there.
-    void find_starts(float reach) {
+    void find_starts() {
         constexpr size_t together = rounded_up(1);
         for (size_t first = 0; first < count; first += together) {
             std::array<float, together> rounding{};
+            const float* beyond = reach.data() + first;
             for (int c = 0; c < 3; ++c) {
                 const float* at = position.component(c) + first;
                 for (size_t k = 0; k < together; ++k) rounding[k] += at[k] * at[k];
@@ -176,7 +179,7 @@ struct PathBatch {
                             *away = face.component(c) + first;
                 float* to = start.component(c) + first;
                 for (size_t k = 0; k < together; ++k)
-                    to[k] = at[k] + (back[k] + away[k]) * rounding[k] + away[k] * reach;
+                    to[k] = at[k] + (back[k] + away[k]) * rounding[k] + away[k] * beyond[k];
             }
         }
     }
@@ -187,6 +190,7 @@ struct PathBatch {
     PathVectors<3> normal;  ///< interpolated and mapped
     PathVectors<3> face;    ///< of the element itself, towards where the path comes from
     PathVectors<3> view;    ///< unit, back along the path
+    std::vector<float> reach;  ///< RayScene::reach() of the surfaces
     PathVectors<3> albedo;
     PathVectors<2> parameters;  ///< metallic, roughness
     std::vector<PathState> state;

@@ -183,6 +183,7 @@ struct PathPass::Block {
         batch.normal = std::move(seen.normal);
         batch.face = std::move(seen.face);
         batch.view = std::move(seen.view);
+        batch.reach = std::move(seen.reach);
         for (size_t i = 0; i < count; ++i) batch.set_state(i, pixels.state_of(x[i], y[i], index[i]));
     }
 

@@ -41,6 +41,13 @@ bool is_same_volume(const RayScene& scene, int a, int b) {
     return a == b || (a >= 0 && b >= 0 && scene.item_of(a).object == scene.item_of(b).object);
 }
 
+/// Which of a path's volumes is that of a surface; none: their number.
+size_t volume_of(const RayScene& scene, const PathState& state, int surface) {
+    const auto found = std::ranges::find_if(
+        state.volumes, [&](int volume) { return is_same_volume(scene, volume, surface); });
+    return size_t(found - state.volumes.begin());
+}
+
 /// Per world unit; 0 where nothing is absorbed.
 Vec3 absorption_of(const Material& material) {
     if (!(material.thickness > 0) || !std::isfinite(material.attenuation_distance)) return Vec3::Zero();
@@ -173,7 +180,7 @@ Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& 
     if (!batch.extensions) return batch.start.at(path);
     const Vec3 face = batch.face.at(path);
     if (direction.dot(face) > 0) return batch.start.at(path);
-    return RayScene::off_surface(batch.position.at(path), -face, -face * scene_->reach());
+    return RayScene::off_surface(batch.position.at(path), -face, -face * batch.reach[path]);
 }
 
 void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const {
@@ -308,10 +315,15 @@ void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered
 
 void PathTracer::cross(int surface, bool is_volume, PathState& state) const {
     if (!is_volume) return;
-    if (is_same_volume(*scene_, state.volumes[0], surface))
-        state.volumes = {state.volumes[1], -1};
-    else
-        state.volumes = {surface, state.volumes[0]};
+    auto& volumes = state.volumes;
+    if (const size_t left = volume_of(*scene_, state, surface); left < volumes.size()) {
+        std::copy(volumes.begin() + std::ptrdiff_t(left) + 1, volumes.end(),
+                  volumes.begin() + std::ptrdiff_t(left));
+        volumes.back() = -1;
+    } else {
+        std::copy_backward(volumes.begin(), volumes.end() - 1, volumes.end());
+        volumes.front() = surface;
+    }
 }
 
 void PathTracer::choose_color(PathBatch& batch, size_t path, uint32_t depth) const {
@@ -390,8 +402,7 @@ Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
     const RayHit& hit = at.hit;
     const Vec3 up = cosine_direction(RayFrame(hit.normal), u);
     const bool open =
-        !scene_->blocked(RayScene::off_surface(hit.position, hit.normal, hit.normal * scene_->reach()), up,
-                         std::numeric_limits<float>::infinity());
+        !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up, std::numeric_limits<float>::infinity());
     return open ? sky_.seen(at.direction, at.density).radiance : Vec3(Vec3::Zero());
 }
 
@@ -405,12 +416,14 @@ bool PathTracer::is_caught(const Hit& hit, uint32_t depth, PathRadiance& radianc
 namespace {
 
 /// Adds a path at a surface to a batch.
-size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t i, PathBatch& to) {
+size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t i,
+                PathBatch& to) {
     const size_t at = to.count++;
     to.position.set(at, hit.hit.position);
     to.normal.set(at, surfaces.normal.at(i));
     to.face.set(at, surfaces.face.at(i));
     to.view.set(at, -hit.direction);
+    to.reach[at] = scene.reach(hit.hit.surface);
     to.albedo.set(at, surfaces.albedo.at(i));
     // What is shown past the light is as if it were matt.
     to.parameters.set(at, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
@@ -447,13 +460,14 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
                    ends = hit.state.bounces > resolved_->settings.path.bounces;
         if (!extended || ends) add(hit.state.index, emission, hit.state.scattered, radiance);
         if (surfaces.kind[i] > 0.9f || ends) continue;
-        const size_t at = add_path(hit, surfaces, i, extended ? next.extended : next.plain);
+        const size_t at = add_path(*scene_, hit, surfaces, i, extended ? next.extended : next.plain);
         if (!extended) continue;
         next.extended.extensions->copy(at, *surfaces.extensions, i);
         next.extended.extended_paths[at] = {hit.hit.surface, all_channels, emission};
         choose_color(next.extended, at, depth);
         const bool is_volume = surfaces.extensions->volume.at(i).z() > 0;
-        const bool inside = is_volume && is_same_volume(*scene_, hit.state.volumes[0], hit.hit.surface);
+        const bool inside =
+            is_volume && volume_of(*scene_, hit.state, hit.hit.surface) < hit.state.volumes.size();
         next.extended.inside[at] = inside ? 1.0f : 0.0f;
     }
     hits.clear();
@@ -463,7 +477,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
 void PathTracer::step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
                       PathRadiance& radiance) const {
     if (batch.count == 0) return;
-    batch.find_starts(scene_->reach());
+    batch.find_starts();
     std::vector<ChosenLight> lamps;
     lights_.choose(batch, depth, false, lamps);
     Scattered scattered(PathBatch::rounded_up(batch.count));

@@ -67,13 +67,13 @@ bool has_areas(const ResolvedSettings& resolved) {
 }
 
 /// Irradiance of area lights, divided by pi, by a point of each.
-Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const Vec3& at, const Vec3& normal,
-                const Vec2& u) {
+Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const RayHit& hit,
+                const Vec3& normal, const Vec2& u) {
     // Rays to a point of an emitter end before it by this part of their length.
     constexpr double before_emitter = 1e-4;
     Vec3 sum = Vec3::Zero();
-    const Vec3d place = at.cast<double>() * scene.unit() + scene.centre();
-    const Vec3 from = RayScene::off_surface(at, normal, normal * scene.reach());
+    const Vec3d place = hit.position.cast<double>() * scene.unit() + scene.centre();
+    const Vec3 from = scene.start_at(hit, normal);
     for (const ResolvedLight& light : resolved.lights) {
         if (!is_area(light.type)) continue;
         const AreaPoint point = area_point(light, place, u);
@@ -120,7 +120,8 @@ Vec3 RayLight::bright_direction(const Vec2& u) const {
     return resolved_->R_env_world.transpose() * bright_.sample(u).direction();
 }
 
-Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
+Vec3 RayLight::from_lights(const RayHit& hit, const Vec3& normal) const {
+    const Vec3& at = hit.position;
     Vec3 sum = Vec3::Zero();
     const auto unit = float(scene_->unit());
     for (const ResolvedLight& light : resolved_->lights) {
@@ -138,7 +139,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
         if (falls <= 0) continue;
         const float reach = parallel ? std::numeric_limits<float>::infinity() : distance;
         if (light.casts_shadows && resolved_->settings.shadows.enabled &&
-            scene_->blocked(RayScene::off_surface(at, normal, normal * scene_->reach()), l, reach))
+            scene_->blocked(scene_->start_at(hit, normal), l, reach))
             continue;
         sum += light.color * (light.intensity * falls * cosine / float(pi));
     }
@@ -166,9 +167,8 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
             hit.item ? surface_at(hit, dielectric) : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));
         const Vec3 diffuse = s.diffuse.cwiseProduct(Vec3::Ones() - reflects);
-        Vec3 lit = from_lights(hit.position, s.normal);
-        if (with_areas)
-            lit += from_areas(*resolved_, *scene_, hit.position, s.normal, random.next().tail<2>());
+        Vec3 lit = from_lights(hit, s.normal);
+        if (with_areas) lit += from_areas(*resolved_, *scene_, hit, s.normal, random.next().tail<2>());
         sum += weight.cwiseProduct(s.emission + diffuse.cwiseProduct(lit));
         const float mirrors = reflects.mean(), scatters = diffuse.mean();
         if (!(mirrors + scatters > 0)) break;
@@ -183,8 +183,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
                      : cosine_direction(frame, u);
         if (next.dot(hit.normal) <= 0) break;
         weight = weight.cwiseProduct(mirrored ? Vec3(reflects / likely) : Vec3(diffuse / (1 - likely)));
-        const auto found = scene_->trace(
-            RayScene::off_surface(hit.position, hit.normal, hit.normal * scene_->reach()), next);
+        const auto found = scene_->trace(scene_->start_at(hit, hit.normal), next);
         // What is seen past a matt surface is blurred, so that few paths do: the sky's mean around a
         // direction.
         const bool blurred = scattered || !mirrored;

@@ -38,7 +38,7 @@ class RayLight {
   private:
     /// What a ground shows that catches shadows: the sky behind it, where it is open.
     Vec3 caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const;
-    Vec3 from_lights(const Vec3& at, const Vec3& normal) const;
+    Vec3 from_lights(const RayHit& hit, const Vec3& normal) const;
     /// Irradiance of the open sky on a surface, divided by pi.
     Vec3 even_sky(const Vec3& normal) const;
 

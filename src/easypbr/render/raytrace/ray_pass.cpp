@@ -193,8 +193,9 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
             oct_decode(Vec2(pixels.normal[from * 2], pixels.normal[from * 2 + 1]) / 32767.5f - Vec2(1, 1));
         seen.view = (pixels.world_from_view * towards).cast<float>();
         const Vec3 place = ((pixels.world_from_view * position + eye) / scene.unit()).cast<float>();
-        seen.face = scene.seen_at({place, seen.normal, seen.view}).face;
-        seen.from = RayScene::off_surface(place, seen.face, seen.face * scene.reach());
+        const RayScene::Seen found = scene.seen_at({place, seen.normal, seen.view});
+        seen.face = found.face;
+        seen.from = RayScene::off_surface(place, seen.face, seen.face * found.reach);
         const float roughness = float(material[1]) / 255;
         seen.alpha = roughness * roughness;
         const Vec2d pixel = (frame.origin + Vec2i(x, y)).cast<double>();

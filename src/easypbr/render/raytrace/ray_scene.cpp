@@ -141,6 +141,7 @@ struct RayScene::Scene final : RayGeometry {
     std::vector<std::unique_ptr<RayElement>> elements;
     std::vector<std::unique_ptr<RayGaussians>> gaussians;
     std::vector<Primitive*> kinds;                      ///< of the elements
+    std::vector<float> reaches;                         ///< likewise
     std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
     std::map<const SceneSnapshot::Object*, std::vector<Vec3>> vertices;
 };
@@ -169,9 +170,11 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     place_ground();
     auto made = std::make_unique<Scene>(centre_, unit_);  // kept once all is there: it can be interrupted
     for (const auto& [kind, item] : items) {
-        if (item->kind == SurfaceKind::lit) reach_ = std::max(reach_, float(kind->reach(*item) / unit_));
+        const float reach = item->kind == SurfaceKind::lit ? float(kind->reach(*item) / unit_) : 0;
+        reach_ = std::max(reach_, reach);
         kind->add_to(*made, *item);
         made->kinds.resize(made->elements.size(), kind);
+        made->reaches.resize(made->elements.size(), reach);
     }
     made->tree.build();
     const Eigen::AlignedBox3f box = made->tree.bounds();
@@ -200,6 +203,10 @@ void RayScene::make_surfaces(const ResolvedSettings& resolved) {
 
 const HitSurface& RayScene::surface(int index) const {
     return *scene_->surfaces[size_t(index)];
+}
+
+float RayScene::reach(int surface) const {
+    return surface < 0 ? 0 : scene_->reaches[size_t(surface)];
 }
 
 int RayScene::surface_count() const {
@@ -310,25 +317,20 @@ RaySegment ray_to(const RayScene::Place& place) {
     return {place.position + near * place.view, -place.view, near + rounding_at(place.position)};
 }
 
-RayScene::Seen nothing_at(const RayScene::Place& place) {
-    return {place.position, place.normal, place.normal};
-}
-
-/// `face`: the normal of what the ray to the place ends at.
-RayScene::Seen seen_by(const RayScene::Place& place, const RaySegment& ray, float distance,
-                       const Vec3& face) {
-    const Vec3 position = ray.from + ray.direction * distance;
-    if (face.dot(place.normal) > 0.3f) return {position, face, place.normal};
-    const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
-    return stands_before ? RayScene::Seen{position, face, face} : nothing_at(place);
-}
-
 }  // namespace
+
+RayScene::Seen RayScene::seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
+                                 int surface) const {
+    const Vec3 position = ray.from + ray.direction * distance;
+    if (face.dot(place.normal) > 0.3f) return {position, face, place.normal, reach(surface)};
+    const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
+    return stands_before ? Seen{position, face, face, reach(surface)} : nothing_at(place);
+}
 
 RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {
     const RaySegment ray = ray_to(place);
     const auto hit = first_hit(ray, transmissive, false);
-    return hit ? seen_by(place, ray, hit->distance, hit->normal) : nothing_at(place);
+    return hit ? seen_by(place, ray, hit->distance, hit->normal, hit->surface) : nothing_at(place);
 }
 
 void RayScene::see(Places& places, Transmissive transmissive) const {
@@ -336,6 +338,7 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
         places.position.set(i, seen.position);
         places.face.set(i, seen.face);
         places.normal.set(i, seen.normal);
+        places.reach[i] = seen.reach;
     };
     if (!scene_ || scene_->calls_back) {
         for (size_t i = 0; i < places.count; ++i) put(i, seen_at(places.at(i), transmissive));
@@ -355,13 +358,14 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
             const RaySegment& ray = segments[i];
             const float to_ground = ground_distance(ray.from, ray.direction);
             if (to_ground < rays.ray.tfar[i])
-                put(first + i, seen_by(place, ray, to_ground, plane_.up));
+                put(first + i, seen_by(place, ray, to_ground, plane_.up, -1));
             else if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
                 put(first + i, nothing_at(place));
             else
                 put(first + i, seen_by(place, ray, rays.ray.tfar[i],
                                        towards_start({rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]},
-                                                     ray.direction)));
+                                                     ray.direction),
+                                       int(rays.hit.geomID[i])));
         }
     });
 }

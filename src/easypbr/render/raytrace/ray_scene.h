@@ -90,8 +90,9 @@ class RayScene {
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }
     double unit() const { return unit_; }
-    /// How far the lit surfaces around vertices reach, so that rays start beyond them; 0 where all are faces.
-    float reach() const { return reach_; }
+    /// How far what is lit of a surface reaches around its vertices, so that rays that leave it start beyond
+    /// it; 0 of faces and of the ground (-1).
+    float reach(int surface) const;
 
     /// Holds all casters; RayScene's frame. Its radius is 0 where there are none.
     struct Ball {
@@ -113,6 +114,11 @@ class RayScene {
     /// and beyond `reach`.
     static Vec3 off_surface(const Vec3& at, const Vec3& away, const Vec3& reach = Vec3::Zero());
 
+    /// The same of what a ray has met, along a unit normal.
+    Vec3 start_at(const RayHit& hit, const Vec3& normal) const {
+        return off_surface(hit.position, normal, normal * reach(hit.surface));
+    }
+
     const std::optional<RayGround>& ground() const { return ground_; }
 
     /// The first surface in the direction (unit); safe to call from several threads, as are the others.
@@ -125,6 +131,7 @@ class RayScene {
         Vec3 position;
         Vec3 face;    ///< normal of the element itself: the interpolated one lies above it or below
         Vec3 normal;  ///< the interpolated one, but for a surface that stands before the place
+        float reach = 0;  ///< of the surface; the largest one where it is not found
     };
     /// A pixel's surface as the rasteriser has it.
     struct Place {
@@ -143,7 +150,8 @@ class RayScene {
               normal(position.room()),
               view(position.room()),
               face(position.room()),
-              footprint(position.room()) {}
+              footprint(position.room()),
+              reach(position.room()) {}
 
         Place at(size_t i) const { return {position.at(i), normal.at(i), view.at(i), footprint[i]}; }
 
@@ -151,6 +159,7 @@ class RayScene {
         PathVectors<3> position, normal, view;
         PathVectors<3> face;  ///< of what is seen
         std::vector<float> footprint;
+        std::vector<float> reach;  ///< of what is seen
     };
     /// The same of many places: puts what is seen there in their stead. Of neighbours in a part of the time.
     void see(Places& places, Transmissive transmissive) const;
@@ -174,6 +183,11 @@ class RayScene {
     float ground_distance(const Vec3& from, const Vec3& direction) const;
 
     void place_ground();
+    /// What is seen where no surface is found.
+    Seen nothing_at(const Place& place) const { return {place.position, place.normal, place.normal, reach_}; }
+    /// `hit`: what a ray to the place has met, after `distance`.
+    Seen seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
+                 int surface) const;
 
     std::unique_ptr<Scene> scene_;
     std::optional<RayGround> ground_;
@@ -186,7 +200,7 @@ class RayScene {
     uint64_t generation_ = 0, surfaces_generation_ = 1;
     Vec3d centre_{0, 0, 0};
     double unit_ = 1;
-    float reach_ = 0;
+    float reach_ = 0;  ///< the largest of all surfaces
     Ball ball_;
     ExtensionSet extensions_ = 0;
 };

@@ -69,7 +69,10 @@ SkySampler::Sample SkySampler::seen(const Vec3& direction, float density) const 
 std::vector<SkySampler::Sample> SkySampler::seen(std::span<const Vec3> directions,
                                                  std::span<const float> densities) const {
     std::vector<Sample> samples(directions.size());
-    if (empty()) return samples;
+    if (empty()) {
+        for (size_t i = 0; i < samples.size(); ++i) samples[i] = {directions[i], Vec3::Zero(), 0};
+        return samples;
+    }
     const Rotation rotation = rotation_of(R_env_world_);
     Numbers x, y, z, u, v;
     for (size_t begin = 0; begin < samples.size(); begin += together) {

@@ -1,0 +1,147 @@
+// Path tracing at the borders of surfaces: where rays start, and what lies below interpolated normals.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "render_test.h"
+
+namespace easypbr::path_surfaces_test {
+namespace {
+
+app::Session path_session(const Scene& scene, int size) {
+    app::Session session = plain_session(scene, size);
+    Settings& s = session.settings();
+    s.path.enabled = true;
+    s.path.clamp = 0;
+    s.shadows.enabled = true;
+    return session;
+}
+
+Material matt(float color) {
+    Material m;
+    m.base_color = Vec3::Constant(color);
+    m.roughness = 1;
+    return m;
+}
+
+/// Parallel light that sends the irradiance pi across its direction.
+void shine(Scene& scene, const Vec3& direction) {
+    Light light;
+    light.type = LightType::directional;
+    light.direction = direction;
+    light.intensity = float(pi);
+    light.color = Vec3::Ones();
+    scene.set_light("light", light);
+}
+
+/// Red, of all pixels.
+double mean_of(const Image& image) {
+    double sum = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) sum += double(image.at<float>(x, y)[0]);
+    return sum / double(image.pixel_count());
+}
+
+/// Few large discs, far from the origin.
+Mesh coarse_cloud() {
+    Array3f::Dense V(8, 3), N(8, 3), T(8, 3);
+    for (int i = 0; i < 8; ++i) {
+        V.row(i) = Eigen::RowVector3f(5 + float(i % 2), float(i / 2 % 2), float(i / 4));
+        N.row(i) = Eigen::RowVector3f(0, 1, 0);
+        T.row(i) = Eigen::RowVector3f(0.5f, 0, 0);
+    }
+    MeshData data;
+    data.V = Array3f(V);
+    data.N = Array3f(N);
+    data.T = Array3f(T);
+    data.B = Array1f(Array1f::Dense::Constant(8, 0.5f));
+    return Mesh(data);
+}
+
+// Within walls that send 1 and reflect nothing a ball of albedo 1/2 shows 1/2, however near they are: rays
+// that leave a face start at the face, whatever else is in the scene reaches beyond its vertices.
+TEST(PathSurfaces, CloudsLeaveContactsOfMeshesAlone) {
+    Mesh room = make_box(Vec3(2, 2, 2));
+    Material glowing = matt(0);
+    glowing.emissive = Vec3::Ones();
+    glowing.specular = 0;
+    room.set_material(glowing);
+    for (const float specular : {0.0f, 1.0f}) {
+        Material m = matt(0.5f);
+        m.specular = specular;
+        Mesh ball = make_sphere(0.98, 64);
+        ball.set_material(m);
+        Scene scene;
+        scene.show(room, "room");
+        scene.show(ball, "ball");
+        scene.show(coarse_cloud(), "cloud");
+        app::Session session = path_session(scene, 16);
+        session.settings().shading.dielectric_f0 = 0;
+        // Across the ball, and where it nearly meets the wall: 0.08 away, of 0.5 that the cloud reaches.
+        for (const Vec3d& from : {Vec3d(0.95, 0.95, 0.95), Vec3d(0.93, 0.5, 0)}) {
+            look_from(session, from, 5);
+            if (from.z() == 0) session.settings().camera.target = Vec3d(0.921, 0.335, 0);
+            // The Fresnel reflection at grazing angles adds up to 0.07 at 70 degrees, and 0.02 straight on.
+            const double reflected = specular * (from.z() == 0 ? 0.07 : 0.02);
+            EXPECT_NEAR(mean_of(render_linear(session, 64)), 0.5, 0.005 + reflected) << specular;
+        }
+    }
+}
+
+// Lambert with a mapped normal: lamps bring n . l, and nothing of what lies below the face. 0.01: 8 bits of
+// the normal texture.
+TEST(PathSurfaces, LampsOnMappedNormals) {
+    const double tilt = radians(55);
+    Image normals(2, 2, 3, PixelType::u8);
+    for (int i = 0; i < 4; ++i) {
+        uint8_t* texel = normals.at<uint8_t>(i % 2, i / 2);
+        texel[0] = uint8_t(std::lround(127.5 * (1 + std::sin(tilt))));
+        texel[1] = 128;
+        texel[2] = uint8_t(std::lround(127.5 * (1 + std::cos(tilt))));
+    }
+    const std::function<void(Material&)> plain = [](Material&) {},
+                                         extended = [](Material&m) { m.specular_color = Vec3(1, 1, 0.9f); };
+    for (const auto& change : {plain, extended}) {
+        Material m = matt(0.8f);
+        m.specular = 0;
+        m.normal_texture.image = std::make_shared<Image>(normals);
+        change(m);
+        Scene scene;
+        scene.show(facing_square(1, m), "square");
+        shine(scene, Vec3(0, 0, -1));
+        app::Session session = path_session(scene, 8);
+        look_from(session, Vec3d(0, 0, 4), 10);
+        EXPECT_NEAR(render_linear(session, 16).at<float>(4, 4)[0], 0.8 * std::cos(tilt), 0.01);
+    }
+}
+
+// A coarse ball with interpolated normals is nowhere brighter than the cosine makes it: no face stands out.
+// 0.004: roundings of normals and colours to 8 and 16 bits.
+TEST(PathSurfaces, LampsShowNoFaces) {
+    Mesh ball = make_sphere(1, 12);
+    Material m = matt(0.8f);
+    m.specular = 0;
+    ball.set_material(m);
+    Scene scene;
+    scene.show(ball, "ball");
+    shine(scene, Vec3(-1, 0, -0.3f).normalized());
+    app::Session session = path_session(scene, 64);
+    look_from(session, Vec3d(0, 0, 5), 25);
+    const Image traced = render_linear(session, 8);
+    session.settings().path.enabled = false;
+    session.settings().shadows.enabled = false;
+    const Image cosines = render_linear(session);
+    float brighter = 0, brightest = 0;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const Vec4 a(traced.at<float>(x, y)), b(cosines.at<float>(x, y));
+            if (a.w() < 1 || b.w() < 1) continue;
+            brighter = std::max(brighter, a.x() - b.x());
+            brightest = std::max(brightest, a.x());
+        }
+    EXPECT_LT(brighter, 0.004);
+    EXPECT_NEAR(brightest, 0.8, 0.02);  // where a face and the light meet at less than 12 degrees
+}
+
+}  // namespace
+}  // namespace easypbr::path_surfaces_test
