@@ -134,13 +134,12 @@ def test_what_moves_is_drawn_where_it_is(scene, renderer):
 
 
 def test_a_changed_material_and_new_arrays_are_seen(ball, renderer):
-    material = pyrender.MetallicRoughnessMaterial(baseColorFactor=(1, 0, 0, 1), metallicFactor=0.0)
-    mesh = pyrender.Mesh.from_trimesh(ball, material=material)
-    scene = pyrender.Scene(ambient_light=[1, 1, 1])
+    mesh = pyrender.Mesh.from_trimesh(ball, material=pyrender.MetallicRoughnessMaterial(baseColorFactor=(1.0, 0.0, 0.0), metallicFactor=0.0))
+    scene = pyrender.Scene(ambient_light=[1.0, 1.0, 1.0])
     scene.add(mesh)
     scene.add(CAMERAS["perspective"], pose=at(0, 0, 2.5))
     red = renderer.render(scene)[0][30, 40].astype(int)
-    material.baseColorFactor = (0, 1, 0, 1)
+    mesh.primitives[0].material.baseColorFactor = (0.0, 1.0, 0.0)
     green = renderer.render(scene)[0][30, 40].astype(int)
     assert red[0] > red[1] + 100 and green[1] > green[0] + 100
     mesh.primitives[0].positions = mesh.primitives[0].positions * 0.5
@@ -150,7 +149,7 @@ def test_a_changed_material_and_new_arrays_are_seen(ball, renderer):
 def test_ambient_light_alone_is_the_base_color(ball, renderer):
     """pyrender adds ambient light times base colour; 0.5 linear is 188 in sRGB (186 in its power of 2.2)."""
     material = pyrender.MetallicRoughnessMaterial(baseColorFactor=(0.5, 0.5, 0.5, 1), metallicFactor=0.0, roughnessFactor=1.0)
-    scene = pyrender.Scene(ambient_light=[1, 1, 1])
+    scene = pyrender.Scene(ambient_light=[1.0, 1.0, 1.0])
     scene.add(pyrender.Mesh.from_trimesh(ball, material=material))
     scene.add(CAMERAS["perspective"], pose=at(0, 0, 2.5))
     np.testing.assert_allclose(renderer.render(scene)[0][30, 40].astype(int), 188, atol=10)

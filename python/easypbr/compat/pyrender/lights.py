@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
+from .colors import color as color_of
 
 
 class Light:
-    """What all lights have: a linear colour, and an intensity in lux (directional) or candela."""
+    """What all lights have: a linear colour (whole numbers: 0 to 255), and an intensity in lux (directional) or candela."""
 
     intensity: float
 
@@ -26,8 +27,7 @@ class Light:
 
     @color.setter
     def color(self, color: ArrayLike | None) -> None:
-        values = np.ones(3) if color is None else np.asarray(color, dtype=np.float64)
-        self._color = np.full(3, values) if values.ndim == 0 else values[:3]
+        self._color = color_of(color, 3, 1.0)
 
     def made(self, pose: NDArray[Any], casts_shadows: bool) -> "_easypbr.Light":
         """The light of a node with this pose."""

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _easypbr
+from .colors import color, decoded
 
 
 class Sampler:
@@ -54,13 +55,23 @@ class Texture:
 
     @property
     def pixels(self) -> NDArray[Any] | None:
-        """Height x width x channels, uint8; None: there is no image."""
+        """Height x width (x channels), uint8; None: there is no image."""
         if self.source is None:
             return None
-        array = np.asarray(self.source)
-        if array.dtype.kind == "f":
-            array = np.clip(array * 255 + 0.5, 0, 255)
+        source = self.source
+        mode = getattr(source, "mode", None)
+        if mode is not None and mode not in ("L", "RGB", "RGBA"):  # Palettes and other modes of Pillow.
+            has_alpha = "A" in mode or "transparency" in getattr(source, "info", {})
+            source = source.convert("L" if mode == "1" else "RGBA" if has_alpha else "RGB")
+        array = np.asarray(source)
+        if array.dtype.kind in "fb":
+            array = np.clip(array * 255.0 + 0.5, 0, 255)
         return array.astype(np.uint8)
+
+    def is_transparent(self, cutoff: float = 1.0) -> bool:
+        """Whether the alpha of a pixel is below `cutoff`, 0 to 1."""
+        pixels = self.pixels
+        return pixels is not None and pixels.ndim == 3 and pixels.shape[2] == 4 and bool(pixels[:, :, 3].min() < cutoff * 255)
 
 
 def texture_of(given: Any, channels: str) -> Texture | None:
@@ -68,12 +79,6 @@ def texture_of(given: Any, channels: str) -> Texture | None:
     if given is None or isinstance(given, Texture):
         return given
     return Texture(source=given, source_channels=channels)
-
-
-def _color(given: Any, length: int, default: Any) -> NDArray[Any]:
-    values = np.asarray(default if given is None else given, dtype=np.float64)
-    values = np.full(length, values) if values.ndim == 0 else values
-    return np.append(values, 1.0) if length == 4 and len(values) == 3 else values[:length]
 
 
 def _fraction(number: float) -> float:
@@ -100,7 +105,7 @@ class Material:
         self.normalTexture = texture_of(self.normalTexture, "RGB")
         self.occlusionTexture = texture_of(self.occlusionTexture, "R")
         self.emissiveTexture = texture_of(self.emissiveTexture, "RGB")
-        self.emissiveFactor = _color(self.emissiveFactor, 3, (0, 0, 0))
+        self.emissiveFactor = color(self.emissiveFactor, 3, 0.0)
         self.alphaMode = "OPAQUE" if self.alphaMode is None else self.alphaMode
         self.alphaCutoff = 0.5 if self.alphaCutoff is None else float(self.alphaCutoff)
 
@@ -108,16 +113,27 @@ class Material:
         """Linear base colour with alpha, metallic, roughness."""
         return np.ones(4), 0.0, 1.0
 
-    def put(self, material: "_easypbr.Material") -> None:
-        """Sets EasyPBR's material to this one."""
-        color, metallic, roughness = self._color_and_numbers()
-        material.base_color = color[:3]
+    @property
+    def is_transparent(self) -> bool:
+        """Whether something of it is seen through."""
+        if self.alphaMode == "OPAQUE":
+            return False
+        cutoff = 1.0 if self.alphaMode == "BLEND" else self.alphaCutoff
+        texture = self._color_texture()
+        return bool(self._color_and_numbers()[0][3] < cutoff) or (texture is not None and texture.is_transparent(cutoff))
+
+    def put(self, material: "_easypbr.Material", is_flat: bool = False) -> None:
+        """Sets EasyPBR's material to this one. `is_flat`: its colour is shown as it is, without light."""
+        base, metallic, roughness = self._color_and_numbers()
+        material.base_color = decoded(base[:3]) if is_flat else base[:3]
         material.metallic, material.roughness = metallic, roughness
-        material.emissive = self.emissiveFactor
+        material.emissive = color(self.emissiveFactor, 3, 0.0)
         # pyrender sorts nothing that is opaque in fact.
-        is_clear = color[3] < 1 and self.alphaMode != "OPAQUE"
-        material.opacity = float(color[3]) if is_clear else 1.0
-        material.alpha_mode = {"OPAQUE": "opaque", "MASK": "mask"}.get(self.alphaMode, "auto")
+        is_clear = base[3] < 1 and self.alphaMode != "OPAQUE"
+        material.opacity = float(base[3]) if is_clear else 1.0
+        is_blended = self.alphaMode == "BLEND" and self.is_transparent
+        material.alpha_mode = "blend" if is_blended else {"OPAQUE": "opaque", "MASK": "mask"}.get(self.alphaMode, "auto")
+        material.alpha_cutoff = self.alphaCutoff
         material.double_sided = self.doubleSided
 
     def put_textures(self, material: "_easypbr.Material") -> None:
@@ -148,14 +164,14 @@ class MetallicRoughnessMaterial(Material):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.baseColorFactor = _color(self.baseColorFactor, 4, (1, 1, 1, 1))
-        self.baseColorTexture = texture_of(self.baseColorTexture, "RGB")
+        self.baseColorFactor = color(self.baseColorFactor, 4, 1.0)
+        self.baseColorTexture = texture_of(self.baseColorTexture, "RGBA")
         self.metallicFactor = 1.0 if self.metallicFactor is None else float(self.metallicFactor)
         self.roughnessFactor = 1.0 if self.roughnessFactor is None else float(self.roughnessFactor)
         self.metallicRoughnessTexture = texture_of(self.metallicRoughnessTexture, "GB")
 
     def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
-        return _color(self.baseColorFactor, 4, (1, 1, 1, 1)), _fraction(self.metallicFactor), _fraction(self.roughnessFactor)
+        return color(self.baseColorFactor, 4, 1.0), _fraction(self.metallicFactor), _fraction(self.roughnessFactor)
 
     def _color_texture(self) -> Any:
         return self.baseColorTexture
@@ -166,8 +182,13 @@ class MetallicRoughnessMaterial(Material):
     def put_textures(self, material: "_easypbr.Material") -> None:
         super().put_textures(material)
         both = None if self.metallicRoughnessTexture is None else self.metallicRoughnessTexture.pixels
-        if both is not None and both.ndim == 3 and both.shape[2] >= 3:  # glTF: roughness in green, metallic in blue.
-            material.roughness_texture, material.metallic_texture = both[:, :, 1].copy(), both[:, :, 2].copy()
+        if both is None:
+            return
+        if both.ndim == 2:
+            both = both[:, :, None]
+        # glTF: roughness in green, metallic in blue; the two alone, or one for both.
+        roughness, metallic = {1: (0, 0), 2: (0, 1)}.get(both.shape[2], (1, 2))
+        material.roughness_texture, material.metallic_texture = both[:, :, roughness].copy(), both[:, :, metallic].copy()
 
 
 @dataclass(eq=False, repr=False)
@@ -182,14 +203,14 @@ class SpecularGlossinessMaterial(Material):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.diffuseFactor = _color(self.diffuseFactor, 4, (1, 1, 1, 1))
+        self.diffuseFactor = color(self.diffuseFactor, 4, 1.0)
         self.diffuseTexture = texture_of(self.diffuseTexture, "RGBA")
-        self.specularFactor = _color(self.specularFactor, 3, (1, 1, 1))
+        self.specularFactor = color(self.specularFactor, 3, 1.0)
         self.glossinessFactor = float(self.glossinessFactor)
         self.specularGlossinessTexture = texture_of(self.specularGlossinessTexture, "RGBA")
 
     def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
-        return _color(self.diffuseFactor, 4, (1, 1, 1, 1)), 0.0, _fraction(1 - self.glossinessFactor)
+        return color(self.diffuseFactor, 4, 1.0), 0.0, _fraction(1 - self.glossinessFactor)
 
     def _color_texture(self) -> Any:
         return self.diffuseTexture

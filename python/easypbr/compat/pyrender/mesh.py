@@ -1,21 +1,39 @@
 """Meshes: primitives of arrays, each with a material."""
 
-from collections.abc import Sequence
+import copy
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
-from ...conversions.maker import colors
 from ...errors import ArgumentError
 from .bounded import Bounded
+from .colors import colors, encoded
 from .constants import GLTF
 from .materials import Material, MetallicRoughnessMaterial
 
 
-def _floats(array: ArrayLike | None) -> NDArray[Any] | None:
-    return None if array is None else np.ascontiguousarray(array, dtype=np.float32)
+def _floats(array: ArrayLike) -> NDArray[Any]:
+    return np.ascontiguousarray(array, dtype=np.float32)
+
+
+def _texcoords(array: ArrayLike) -> NDArray[Any]:
+    return _floats(np.asarray(array)[:, :2])
+
+
+#: What attributes of a Primitive are turned into when they are assigned.
+_TAKEN_AS: dict[str, Callable[[Any], Any]] = {
+    "positions": lambda array: np.asarray(array, dtype=np.float64),
+    "normals": _floats,
+    "tangents": _floats,
+    "texcoord_0": _texcoords,
+    "texcoord_1": _texcoords,
+    "indices": lambda array: np.asarray(array).astype(np.int64, copy=False),
+    "poses": lambda array: np.asarray(array, dtype=np.float64).reshape(-1, 4, 4),
+    "mode": int,
+}
 
 
 class Primitive(Bounded):
@@ -52,20 +70,30 @@ class Primitive(Bounded):
         targets: Any = None,
         poses: ArrayLike | None = None,
     ) -> None:
-        self.positions = np.asarray(positions, dtype=np.float64)
-        self.normals, self.tangents = _floats(normals), _floats(tangents)
-        self.texcoord_0, self.texcoord_1 = _floats(texcoord_0), _floats(texcoord_1)
-        self.color_0 = None if color_0 is None else colors(color_0, len(self.positions))
+        given: dict[str, Any] = {
+            "positions": positions, "normals": normals, "tangents": tangents, "texcoord_0": texcoord_0, "texcoord_1": texcoord_1,
+            "color_0": color_0, "indices": indices, "poses": poses, "material": material,
+            "mode": GLTF.TRIANGLES if mode is None else mode,
+        }  # fmt: skip
+        for name, value in given.items():
+            setattr(self, name, value)
         self.joints_0, self.weights_0, self.targets = joints_0, weights_0, targets
-        self.indices = None if indices is None else np.asarray(indices)
-        self.material = MetallicRoughnessMaterial() if material is None else material
-        self.mode = GLTF.TRIANGLES if mode is None else int(mode)
-        self.poses = None if poses is None else np.asarray(poses, dtype=np.float64).reshape(-1, 4, 4)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name == "material":
+            value = MetallicRoughnessMaterial() if value is None else value
+            if not isinstance(value, Material):
+                raise TypeError(f"a Primitive's material: expected a Material, got a {type(value).__name__}")
+        elif name == "color_0" and value is not None:
+            value = colors(value, len(self.positions))
+        elif name in _TAKEN_AS and value is not None:
+            value = _TAKEN_AS[name](value)
+        super().__setattr__(name, value)
 
     @property
     def bounds(self) -> NDArray[Any]:
         """Lower and upper corner, 2 x 3."""
-        if len(self.positions) == 0:
+        if len(self.positions) == 0 or (self.poses is not None and len(self.poses) == 0):
             return np.zeros((2, 3))
         corners = np.array([self.positions.min(axis=0), self.positions.max(axis=0)])
         if self.poses is None:
@@ -75,10 +103,19 @@ class Primitive(Bounded):
 
     @property
     def is_transparent(self) -> bool:
-        return self.material.alphaMode != "OPAQUE"
+        """Whether something of it is seen through: its material, or colours with an alpha below 1."""
+        return self.material.is_transparent or (self.color_0 is not None and bool((self.color_0[:, 3] < 1).any()))
 
     def _order(self) -> NDArray[Any]:
         return np.arange(len(self.positions)) if self.indices is None else self.indices.ravel()
+
+    def _points(self) -> NDArray[Any]:
+        """Indices of the points that are drawn."""
+        order = self._order()
+        if len(order) and not (order.min() >= 0 and order.max() < len(self.positions)):
+            last = len(self.positions) - 1
+            raise ArgumentError(f"a Primitive: expected indices from 0 to {last}, got {order.min()} to {order.max()}")
+        return order
 
     def elements(self) -> tuple[str, NDArray[Any] | None]:
         """ "F", "E" or "V", and the indices of triangles or lines."""
@@ -100,17 +137,23 @@ class Primitive(Bounded):
             return "V", None
         raise ArgumentError(f"a Primitive: expected a mode from 0 (points) to 6 (triangle fan), got {self.mode}")
 
-    def made(self) -> "_easypbr.Mesh":
-        """The mesh that is drawn: of its own without poses, else with a child for each."""
+    def made(self, is_flat: bool = False) -> "_easypbr.Mesh":
+        """The mesh that is drawn: of its own without poses, else with a child for each. `is_flat`: its colours are shown as they
+        are, without light; else they are linear factors of what is lit."""
         kind, elements = self.elements()
-        arrays: dict[str, Any] = {"V": self.positions, "C": self.color_0, "UV": self.texcoord_0}
+        arrays: dict[str, Any] = {"V": self.positions, "UV": self.texcoord_0}
+        if self.color_0 is not None:
+            color = self.color_0 if is_flat else encoded(self.color_0)
+            arrays["C"] = np.column_stack([color[:, :3], self.color_0[:, 3]])
         if self.normals is not None and len(self.normals) == len(self.positions):
             arrays["N"] = self.normals
         if elements is not None:
             arrays[kind] = elements
+        elif self.indices is not None:
+            arrays = {name: array[self._points()] for name, array in arrays.items() if array is not None}
         mesh = _easypbr.Mesh()
         mesh.assign(**{name: array for name, array in arrays.items() if array is not None})
-        self.material.put(mesh.material)
+        self.material.put(mesh.material, is_flat)
         self.material.put_textures(mesh.material)
         mesh.style.flat = kind == "F" and not self.material.smooth
         if kind == "V":
@@ -197,31 +240,29 @@ def _primitive_of(mesh: Any, material: Material | None, poses: Any, wireframe: b
         if kind != "face":
             color, uv = (None if array is None else array[corners] for array in (color, uv))
         V, F = V[corners], np.arange(len(corners)).reshape(-1, 3)
-    own = material or _material_of(mesh, kind)
+    # As in pyrender, a material that is given replaces colours, too, and is copied.
+    own = _material_of(mesh, kind) if material is None else copy.copy(material)
     own.smooth, own.wireframe = smooth, wireframe
+    color = color if material is None else None
     return Primitive(V, normals=normals, color_0=color, texcoord_0=uv, indices=F, material=own, poses=poses)
 
 
 def _material_of(mesh: Any, kind: str | None) -> Material:
-    """That of a textured trimesh; else a grey one, as pyrender has it."""
-    given = getattr(mesh.visual, "material", None) if kind == "texture" else None
-    if given is None:
-        is_colored = kind in ("vertex", "face")
-        grey = (1.0, 1.0, 1.0, 1.0) if is_colored else (0.3, 0.3, 0.3, 1.0)
-        return MetallicRoughnessMaterial(alphaMode="BLEND", baseColorFactor=grey, metallicFactor=0.2, roughnessFactor=0.8)
-    image = getattr(given, "baseColorTexture", None) or getattr(given, "image", None)
-    factor: Any = (1, 1, 1, 1)
-    metallic, roughness = 0.2, 0.8
+    """That of a textured trimesh; else a grey one. What they have is what pyrender 0.1.45 gives them."""
+    given: Any = getattr(mesh.visual, "material", None) if kind == "texture" else None
+    if isinstance(given, Material):
+        return copy.copy(given)
     if hasattr(given, "baseColorFactor"):
-        factor = (255, 255, 255, 255) if given.baseColorFactor is None else given.baseColorFactor
-        factor = np.asarray(factor) / 255
-        metallic = 1.0 if given.metallicFactor is None else given.metallicFactor
-        roughness = 1.0 if given.roughnessFactor is None else given.roughnessFactor
-    elif image is None and getattr(given, "diffuse", None) is not None:
-        factor = np.asarray(given.diffuse) / 255
-    pixels = None if image is None else np.asarray(image.convert("RGBA"))
-    return MetallicRoughnessMaterial(
-        alphaMode="BLEND", baseColorFactor=factor, baseColorTexture=pixels, metallicFactor=metallic, roughnessFactor=roughness,
-        normalTexture=getattr(given, "normalTexture", None), emissiveTexture=getattr(given, "emissiveTexture", None),
-        metallicRoughnessTexture=getattr(given, "metallicRoughnessTexture", None),
-    )  # fmt: skip
+        names = ("normalTexture", "occlusionTexture", "emissiveTexture", "emissiveFactor", "baseColorFactor", "baseColorTexture",
+                 "metallicFactor", "roughnessFactor", "metallicRoughnessTexture", "doubleSided", "alphaCutoff")  # fmt: skip
+        values: dict[str, Any] = {name: getattr(given, name, None) for name in names}
+        values["doubleSided"] = bool(values["doubleSided"])
+        return MetallicRoughnessMaterial(alphaMode="BLEND", **values)
+    if hasattr(given, "diffuse"):
+        exponent = np.ravel(getattr(given, "kwargs", {}).get("Ns", 1.0))[0]  # Of the highlight of Phong's model.
+        roughness = (2 / (max(float(exponent), 0) + 2)) ** 0.25
+        return MetallicRoughnessMaterial(
+            alphaMode="BLEND", baseColorFactor=given.diffuse, baseColorTexture=getattr(given, "image", None), roughnessFactor=roughness,
+        )  # fmt: skip
+    grey = (1.0, 1.0, 1.0, 1.0) if kind in ("vertex", "face") else (0.3, 0.3, 0.3, 1.0)
+    return MetallicRoughnessMaterial(alphaMode="BLEND", baseColorFactor=grey, metallicFactor=0.2, roughnessFactor=0.8)

@@ -72,13 +72,13 @@ class Node:
 
     @property
     def matrix(self) -> NDArray[Any]:
-        """4 x 4, to the parent's frame."""
+        """4 x 4, to the parent's frame: a copy, assign one to change it."""
         if self._matrix is None:
             T = np.eye(4)
             T[:3, :3] = _rotation_matrix(self._rotation) * self._scale
             T[:3, 3] = self._translation
             self._matrix = T
-        return self._matrix
+        return self._matrix.copy()
 
     @matrix.setter
     def matrix(self, value: ArrayLike) -> None:

@@ -9,13 +9,15 @@ from numpy.typing import ArrayLike, NDArray
 from ...errors import ArgumentError
 from .bounded import Bounded
 from .cameras import Camera
+from .colors import color
 from .lights import DirectionalLight, Light, PointLight, SpotLight
 from .mesh import Mesh
 from .node import Node
 
 
 class Scene(Bounded):
-    """Nodes, a background colour (sRGB, alpha counts with RenderFlags.RGBA) and ambient light (linear)."""
+    """Nodes, a background colour (sRGB, alpha counts with RenderFlags.RGBA) and ambient light (linear). Whole numbers of colours
+    are 0 to 255, others 0 to 1."""
 
     def __init__(
         self,
@@ -39,9 +41,7 @@ class Scene(Bounded):
 
     @bg_color.setter
     def bg_color(self, value: ArrayLike | None) -> None:
-        color = np.ones(4) if value is None else np.asarray(value, dtype=np.float64)
-        color = np.full(3, color) if color.ndim == 0 else color
-        self._bg_color = np.append(color, 1.0) if len(color) == 3 else color[:4]
+        self._bg_color = color(value, 4, 1.0)
 
     @property
     def ambient_light(self) -> NDArray[Any]:
@@ -49,8 +49,7 @@ class Scene(Bounded):
 
     @ambient_light.setter
     def ambient_light(self, value: ArrayLike | None) -> None:
-        color = np.zeros(3) if value is None else np.asarray(value, dtype=np.float64)
-        self._ambient_light = np.full(3, color) if color.ndim == 0 else color[:3]
+        self._ambient_light = color(value, 3, 0.0)
 
     def walk(self) -> Iterator[tuple[Node, Node | None, NDArray[Any]]]:
         """Each node with its parent and its 4 x 4 pose in the world, parents first."""
@@ -103,6 +102,18 @@ class Scene(Bounded):
     @property
     def lights(self) -> set[Light]:
         return {node.light for node in self._ordered("light") if node.light is not None}
+
+    @property
+    def point_lights(self) -> set[Light]:
+        return {light for light in self.lights if isinstance(light, PointLight)}
+
+    @property
+    def spot_lights(self) -> set[Light]:
+        return {light for light in self.lights if isinstance(light, SpotLight)}
+
+    @property
+    def directional_lights(self) -> set[Light]:
+        return {light for light in self.lights if isinstance(light, DirectionalLight)}
 
     @property
     def main_camera_node(self) -> Node | None:
