@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ...errors import ArgumentError
 from .constants import RenderFlags
 from .drawing import Drawing
+from .lines import depths_of_lines
 from .node import Node
 from .scene import Scene
 
@@ -45,21 +46,31 @@ class OffscreenRenderer:
         if not drawing.shown:
             return self._of_nothing(scene, flags)
         drawing.set_camera(node.camera, scene.get_pose(node), *size)
-        found = drawing.view.layers(["depth", "object_id"] if is_map else ["depth"], size)
-        depth = found["depth"]
+        # As in pyrender, wireframes are solid where only depths or segments are drawn.
+        is_solid = is_map or bool(flags & RenderFlags.DEPTH_ONLY)
+        found = drawing.layers(["depth", "object_id"] if is_map else ["depth"], size, is_solid)
+        seen = depth = found["depth"]
         if node.camera.zfar is not None:
             depth = np.where(depth <= node.camera.zfar, depth, np.float32(0))
+        colors = dict(seg_node_map or {}) if is_map else None
+        segments = None if colors is None else _segments(found["object_id"], depth, drawing, colors)
+        for shown, ends in drawing.lines(is_solid):
+            of_lines = depths_of_lines(ends, node.camera, scene.get_pose(node), *size)
+            is_front = of_lines < np.where(depth > 0, depth, np.inf)
+            depth = np.where(is_front, of_lines, depth)
+            if colors is not None and segments is not None:
+                segments[is_front] = _rgb(colors[shown])
         if flags & RenderFlags.DEPTH_ONLY:
             return depth
-        if is_map:
-            return _segments(found["object_id"], depth, drawing, dict(seg_node_map or {})), depth
-        return self._colors(scene, flags, depth, found["depth"]), depth
+        if segments is not None:
+            return _with_alpha(segments, flags), depth
+        return self._colors(scene, flags, depth, seen), depth
 
     def _colors(self, scene: Scene, flags: int, depth: NDArray[Any], seen: NDArray[Any]) -> NDArray[Any]:
         """The image over the background, which is sRGB as it is given."""
         assert self._drawing is not None
         view = self._drawing.view
-        is_whole = depth is seen or np.array_equal(depth, seen)  # Nothing is left behind zfar.
+        is_whole = not ((depth == 0) & (seen > 0)).any()  # Nothing is left behind zfar.
         if is_whole and not flags & RenderFlags.RGBA:
             view.settings["background.mode"] = "color"
             view.settings["background.color"] = [float(part) for part in np.clip(scene.bg_color[:3], 0, 1)]
@@ -82,9 +93,10 @@ class OffscreenRenderer:
         depth = np.zeros(shape, np.float32)
         if flags & RenderFlags.DEPTH_ONLY:
             return depth
-        channels = 4 if flags & RenderFlags.RGBA else 3
-        ground = np.zeros(3) if flags & RenderFlags.SEG else scene.bg_color[:channels]
-        return np.broadcast_to((np.clip(ground, 0, 1) * 255 + 0.5).astype(np.uint8), (*shape, len(ground))).copy(), depth
+        if flags & RenderFlags.SEG:
+            return _with_alpha(np.zeros((*shape, 3), np.uint8), flags), depth
+        ground = (np.clip(scene.bg_color[: 4 if flags & RenderFlags.RGBA else 3], 0, 1) * 255 + 0.5).astype(np.uint8)
+        return np.broadcast_to(ground, (*shape, len(ground))).copy(), depth
 
     def delete(self) -> None:
         """Frees what was made of the scene."""
@@ -97,6 +109,16 @@ def _segments(object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, co
     """Height x width x 3 uint8: the colour of each pixel's node, black where there is none."""
     table = np.zeros((len(drawing.view.object_names()) + 1, 3), np.uint8)
     for place, name in enumerate(drawing.view.object_names(), 1):
-        color = np.asarray(colors[drawing.shown[name]])
-        table[place] = color if color.ndim == 0 else color[:3]
+        table[place] = _rgb(colors[drawing.shown[name.partition("/")[0]]])  # "node 1/part" is of "node 1".
     return table[np.where(depth > 0, object_id, 0).astype(int)]
+
+
+def _rgb(color: Any) -> NDArray[Any]:
+    """uint8 x 3 of a number or of three, 0 to 255."""
+    given = np.asarray(color)
+    return np.broadcast_to(given if given.ndim == 0 else given[:3], 3).astype(np.uint8)
+
+
+def _with_alpha(segments: NDArray[Any], flags: int) -> NDArray[Any]:
+    """With RenderFlags.RGBA four channels, opaque."""
+    return np.dstack([segments, np.full(segments.shape[:2], 255, np.uint8)]) if flags & RenderFlags.RGBA else segments

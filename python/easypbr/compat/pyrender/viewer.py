@@ -45,9 +45,10 @@ class Viewer:
         """Takes over what changed in the scene."""
         flags = RenderFlags.SHADOWS_ALL if self.render_flags.get("shadows") else RenderFlags.NONE
         flags |= RenderFlags.ALL_WIREFRAME if self.render_flags.get("all_wireframe") else 0
+        flags |= RenderFlags.FLIP_WIREFRAME if self.render_flags.get("flip_wireframe") else 0
         flags |= 0 if self.render_flags.get("cull_faces", True) else RenderFlags.SKIP_CULL_FACES
         with self.render_lock:
-            self._drawing.update(self.scene, flags)
+            self._drawing.update(self.scene, flags, point_size=float(self.render_flags.get("point_size", 1.0)))
             view = self._drawing.view
             view.settings["background.color"] = tuple(np.clip(self.scene.bg_color[:3], 0, 1))
             node = self.scene.main_camera_node
