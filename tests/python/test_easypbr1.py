@@ -162,7 +162,53 @@ def test_lights(view):
         view.spotlight_with_idx(3)
 
 
+def test_lenses_of_cameras_that_are_not_moved(view):
+    """m_fov is the vertical one times the aspect ratio, 64 / 48; the fitted camera stays automatic."""
+    Scene.show(ball(), "ball")
+    view.m_camera.m_fov = 60
+    view.m_camera.m_exposure = 3
+    view.draw()
+    assert view.own.camera.fov_y_deg == pytest.approx(45) and view.own.settings.tonemap.exposure == 3
+    # The ball fills the height but for the margin, as in the test above.
+    assert np.arcsin(1 / np.linalg.norm(view.m_camera.position())) / np.radians(45 / 2) == pytest.approx(0.95, abs=0.02)
+    view.m_camera.set_position([0, 0, 4])
+    view.draw()
+    assert view.m_camera.m_fov == pytest.approx(60)
+    view.m_camera.m_fov = 80
+    view.draw()
+    assert view.own.camera.fov_y_deg == pytest.approx(60)
+    np.testing.assert_allclose(view.m_camera.position(), [0, 0, 4], atol=1e-6)
+
+
 # Meshes.
+
+
+def test_arrays_are_changed_in_place(view):
+    mesh = Mesh()
+    mesh.create_box(1, 1, 1)
+    Scene.show(mesh, "box")
+    V = mesh.V
+    for height in (5.5, 10.5):  # Half a side, and five for each step.
+        V[:, 1] += 5
+        view.draw()
+        assert easypbr.Scene.get("box").bounding_box()[1][1] == pytest.approx(height)
+    mesh.V[:, 0] *= 2
+    assert mesh.get_scale() == pytest.approx(2)
+    mesh.normalize_size()
+    view.draw()
+    assert mesh.get_scale() == pytest.approx(1), "what was read before is not the mesh's any more"
+    mesh.C = np.zeros((len(V), 3))
+    mesh.C[:, 0] = 1
+    view.draw()
+    assert easypbr.Scene.get("box").C[0].tolist() == [1, 0, 0]
+
+
+def test_poses_in_one_line():
+    mesh = ball()
+    mesh.model_matrix = mesh.model_matrix.set_translation([1, 2, 3]).rotate_axis_angle([0, 1, 0], 90)
+    np.testing.assert_allclose(mesh.model_matrix.translation(), [1, 2, 3])
+    # A quarter turn about y brings x to -z.
+    np.testing.assert_allclose(mesh.model_matrix.linear() @ [1, 0, 0], [0, 0, -1], atol=1e-12)
 
 
 def test_arrays_in_any_order_and_of_any_number(view):
@@ -208,6 +254,14 @@ def test_options_become_styles():
     assert mesh.handle().style.visible is False, "nothing is to be shown"
     with pytest.raises(AttributeError, match="no 'm_show_pionts' .did you mean 'm_show_points'"):
         options.m_show_pionts = True
+
+
+def test_lines_show_their_points_too():
+    mesh = Mesh()
+    mesh.create_line_strip_from_points([[0, 0, 0], [0, 1, 0], [0.2, 2, 0]])
+    mesh.m_vis.m_show_points = True
+    style = mesh.handle().style
+    assert (style.mode, style.show_points) == ("lines", True)
 
 
 def test_surfels_have_the_radius_that_was_seen():
@@ -288,12 +342,37 @@ def test_the_scene_by_names(view):
     Scene.set_floor_visible(True)
 
 
+def test_meshes_that_are_empty_at_first(view):
+    mesh = Mesh()
+    Scene.show(mesh, "later")
+    view.draw()
+    assert Scene.get_scale() == 0
+    mesh.V = np.eye(3)
+    mesh.m_vis.m_show_points = True
+    view.draw()
+    assert Scene.get_scale() == pytest.approx(1) and (view.gbuffer_mat_with_name("depth_gtex").data > 0).any()
+
+
+def test_the_grid_is_hidden_by_its_name(view):
+    Scene.show(ball(), "ball")
+    Scene.get_mesh_with_name("grid_floor").m_vis.m_is_visible = False
+    view.draw()
+    assert view.own.settings.ground.mode == "none"
+    assert not Scene.get_mesh_with_name("grid_floor").m_vis.m_is_visible
+    Scene.get_mesh_with_name("grid_floor").m_vis.m_is_visible = True
+    view.draw()
+    assert view.own.settings.ground.mode != "none"
+
+
 # The rest.
 
 
 def test_colors_labels_frames(view):
     colors = ColorMngr().eigen2color([0.0, 1.0, 2.0], "viridis")
     np.testing.assert_allclose(colors, easypbr.colormap("viridis")[[0, 128, 255]] / 255)
+    # What is no number has the colour of the least.
+    np.testing.assert_allclose(ColorMngr().eigen2color([np.nan, 1.0, 2.0], "viridis"), easypbr.colormap("viridis")[[0, 0, 255]] / 255)
+    assert LabelMngr(3, -1)._map().color_of(1) == LabelMngr(3, 0)._map().color_of(1), "no class is unlabelled"
     labels = LabelMngr(3, 0)
     labels.set_color_for_label_with_idx(1, [1, 0, 0])
     mesh = ball()

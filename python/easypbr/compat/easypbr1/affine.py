@@ -43,7 +43,7 @@ def to_quaternion(R: NDArray[Any]) -> NDArray[Any]:
 
 
 class Affine3d:
-    """A 4 x 4 matrix with the first EasyPBR's methods, which change it in place."""
+    """A 4 x 4 matrix with the first EasyPBR's methods, which change it in place and return a copy of the result."""
 
     def __init__(self, matrix: ArrayLike | None = None, changed: Callable[[], None] | None = None) -> None:
         self._m = np.eye(4) if matrix is None else np.array(matrix, dtype=np.float64).reshape(4, 4)
@@ -68,51 +68,54 @@ class Affine3d:
     def from_matrix(self, matrix: ArrayLike) -> "Affine3d":
         self._m[:] = np.asarray(matrix, dtype=np.float64).reshape(4, 4)
         self._changed()
-        return self
+        return self.clone()
 
-    def set_identity(self) -> None:
-        self.from_matrix(np.eye(4))
+    def set_identity(self) -> "Affine3d":
+        return self.from_matrix(np.eye(4))
 
-    def set_translation(self, translation: ArrayLike) -> None:
+    def set_translation(self, translation: ArrayLike) -> "Affine3d":
         self._m[:3, 3] = translation
         self._changed()
+        return self.clone()
 
-    def set_linear(self, linear: ArrayLike) -> None:
+    def set_linear(self, linear: ArrayLike) -> "Affine3d":
         self._m[:3, :3] = linear
         self._changed()
+        return self.clone()
 
-    def set_quat(self, quaternion: ArrayLike) -> None:
+    def set_quat(self, quaternion: ArrayLike) -> "Affine3d":
         """x, y, z, w."""
-        self.set_linear(from_quaternion(quaternion))
+        return self.set_linear(from_quaternion(quaternion))
 
-    def translate(self, step: ArrayLike) -> None:
-        self.set_translation(self._m[:3, 3] + np.asarray(step, dtype=np.float64))
+    def translate(self, step: ArrayLike) -> "Affine3d":
+        return self.set_translation(self._m[:3, 3] + np.asarray(step, dtype=np.float64))
 
-    def rotate_axis_angle(self, axis: ArrayLike, angle_deg: float) -> None:
+    def rotate_axis_angle(self, axis: ArrayLike, angle_deg: float) -> "Affine3d":
         """About an axis of the world, in place."""
-        self.set_linear(rotation(axis, angle_deg) @ self._m[:3, :3])
+        return self.set_linear(rotation(axis, angle_deg) @ self._m[:3, :3])
 
-    def rotate_axis_angle_local(self, axis: ArrayLike, angle_deg: float) -> None:
-        self.set_linear(self._m[:3, :3] @ rotation(axis, angle_deg))
+    def rotate_axis_angle_local(self, axis: ArrayLike, angle_deg: float) -> "Affine3d":
+        return self.set_linear(self._m[:3, :3] @ rotation(axis, angle_deg))
 
-    def orbit_y_around_point(self, point: ArrayLike, angle_deg: float) -> None:
+    def orbit_y_around_point(self, point: ArrayLike, angle_deg: float) -> "Affine3d":
         """Around the vertical line through a point of the world."""
         R, center = rotation((0, 1, 0), angle_deg), np.asarray(point, dtype=np.float64)
         self._m[:3, :3] = R @ self._m[:3, :3]
-        self.set_translation(R @ (self._m[:3, 3] - center) + center)
+        return self.set_translation(R @ (self._m[:3, 3] - center) + center)
 
-    def flip_x(self) -> None:
-        self._flip(0)
+    def flip_x(self) -> "Affine3d":
+        return self._flip(0)
 
-    def flip_y(self) -> None:
-        self._flip(1)
+    def flip_y(self) -> "Affine3d":
+        return self._flip(1)
 
-    def flip_z(self) -> None:
-        self._flip(2)
+    def flip_z(self) -> "Affine3d":
+        return self._flip(2)
 
-    def _flip(self, axis: int) -> None:
+    def _flip(self, axis: int) -> "Affine3d":
         self._m[:3, axis] *= -1
         self._changed()
+        return self.clone()
 
     def to_float(self) -> "Affine3d":
         return self.clone()

@@ -22,7 +22,6 @@ class Camera:
     """A pose that looks at a point `dist_to_lookat()` ahead. m_fov is horizontal, in degrees, and the vertical one is m_fov divided by the
     aspect ratio, as the first EasyPBR had it, so that its saved viewpoints look the same."""
 
-    m_fov: float
     m_near: float
     m_far: float
 
@@ -31,13 +30,22 @@ class Camera:
         self._T[:3, 3] = 0, 0.5, 5
         self._distance = 5.0
         self._is_changed = False
-        self.m_fov, self.m_near, self.m_far = 30.0, 0.01, 5000.0
+        self._fov, self._is_fov_changed = 30.0, False
+        self.m_near, self.m_far = 0.01, 5000.0
         self.m_exposure: float | None = None
         self.m_use_fixed_proj_matrix = False
         self._K: NDArray[Any] | None = None
         self._K_size = (1, 1)
 
     # What it is.
+
+    @property
+    def m_fov(self) -> float:
+        return self._fov
+
+    @m_fov.setter
+    def m_fov(self, degrees: float) -> None:
+        self._fov, self._is_fov_changed = float(degrees), True
 
     @property
     def m_model_matrix(self) -> Affine3d:

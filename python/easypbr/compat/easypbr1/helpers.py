@@ -23,11 +23,13 @@ class ColorMngr:
     """Colours of numbers by a colour map; "pubu" is drawn as cividis."""
 
     def eigen2color(self, values: ArrayLike, color_scheme: str = "magma") -> NDArray[Any]:
-        """n x 3, 0 to 1, from the least to the largest value."""
+        """n x 3, 0 to 1, from the least to the largest value. What is no number has the colour of the least."""
         v = np.asarray(values, dtype=np.float64).ravel()
-        span = v.max() - v.min() if v.size else 0
+        known = v[np.isfinite(v)]
+        low, high = (known.min(), known.max()) if known.size else (0.0, 1.0)
         table = _easypbr.colormap("cividis" if color_scheme == "pubu" else color_scheme)
-        return table[np.round((v - v.min()) / (span or 1) * 255).astype(int) if v.size else []] / 255
+        place = (np.nan_to_num(v, nan=low, posinf=high, neginf=low) - low) / (high - low or 1)
+        return table[np.round(place * 255).astype(int)] / 255
 
     def mat2color(self, mat: Mat, color_scheme: str = "magma") -> Mat:
         data = mat.data[:, :, 0]
@@ -48,7 +50,8 @@ def _one(x: float, name: str) -> NDArray[Any]:
 
 
 class LabelMngr:
-    """LabelMngr(labels_file, colors_file, frequency_file, unlabeled), or LabelMngr(classes, unlabeled) with generated colours."""
+    """LabelMngr(labels_file, colors_file, frequency_file, unlabeled), or LabelMngr(classes, unlabeled) with generated colours. An
+    unlabelled index below 0: there is none."""
 
     def __init__(self, classes: "int | str | os.PathLike[str]", *more: Any) -> None:
         self._colors: NDArray[Any] | None = None
@@ -88,8 +91,9 @@ class LabelMngr:
         self._colors[index] = np.asarray(color)
 
     def _map(self) -> "_easypbr.LabelMap":
-        return _easypbr.LabelMap(self._names, colors=self._colors, unlabelled=self._unlabeled, unknown="unlabelled"
-                                 if self._unlabeled is not None else "refused")  # fmt: skip
+        unlabeled = self._unlabeled if self._unlabeled is not None and self._unlabeled >= 0 else None
+        unknown = "refused" if unlabeled is None else "unlabelled"
+        return _easypbr.LabelMap(self._names, colors=self._colors, unlabelled=unlabeled, unknown=unknown)
 
 
 class Profiler:

@@ -1,6 +1,7 @@
 """Mesh: arrays by the first EasyPBR's names, drawn as a mesh of EasyPBR."""
 
 import os
+import weakref
 from collections.abc import Sequence
 from typing import Any
 
@@ -31,6 +32,11 @@ class Mesh:
     def __init__(self, path: "str | os.PathLike[str] | None" = None) -> None:
         self._mesh = _easypbr.Mesh() if path is None else _easypbr.Mesh(path)
         self._pending: dict[str, Any] = {}
+        #: Arrays that were read since the last picture, those that somebody still has, and what was in them: they may be changed
+        #: in place.
+        self._read: dict[str, NDArray[Any]] = {}
+        self._lent: weakref.WeakValueDictionary[str, NDArray[Any]] = weakref.WeakValueDictionary()
+        self._content: dict[str, NDArray[Any]] = {}
         self._labels: dict[str, NDArray[Any]] = {}
         self._fields: dict[str, Any] = {}
         self._children: list[Mesh] = []
@@ -52,8 +58,7 @@ class Mesh:
 
     def __getattr__(self, name: str) -> Any:
         if name in _ARRAYS:
-            array = self._pending.get(_ARRAYS[name])
-            return getattr(self._mesh, _ARRAYS[name]) if array is None else array
+            return self._array(_ARRAYS[name])
         if name in _LABELS:
             return self._labels.get(name, np.zeros((0, 1), np.int32))
         if name in ("NF", "V_bitangent_v"):
@@ -65,13 +70,43 @@ class Mesh:
             array = np.array(value)
             # Columns of one number are our plain rows of numbers.
             self._pending[_ARRAYS[name]] = array.ravel() if name in ("I", "V_lenght_v") else array
+            self._forget([_ARRAYS[name]])
         elif name in _LABELS:
             self._labels[name] = np.asarray(value).ravel().astype(np.int32)
         else:
             object.__setattr__(self, name, value)
 
+    def _array(self, name: str) -> NDArray[Any]:
+        """An array that may be changed in place, as the first EasyPBR's: what is changed is handed over with the next picture."""
+        found = self._pending.get(name)
+        if found is None:
+            found = self._lent.get(name)
+        if found is None:
+            found = np.array(getattr(self._mesh, name))
+            self._content[name] = found.copy()
+        self._read[name] = self._lent[name] = found
+        return found
+
+    def _forget(self, names: "Sequence[str]" = _OWN) -> None:
+        """Arrays that were read are no longer the mesh's."""
+        for name in names:
+            for known in (self._read, self._lent, self._content):
+                known.pop(name, None)
+
+    def _put(self, **arrays: Any) -> None:
+        """Replaces arrays."""
+        self._mesh.assign(**arrays)
+        self._forget()
+
+    def _collect(self) -> None:
+        """Makes pending what was changed in place."""
+        for name, array in self._lent.items():
+            if name in self._content and not np.array_equal(array, self._content[name], equal_nan=array.dtype.kind == "f"):
+                self._pending.setdefault(name, array)
+
     def handle(self) -> "_easypbr.Mesh":
-        """EasyPBR's mesh, with all that was assigned."""
+        """EasyPBR's mesh, with all that was assigned or changed in place."""
+        self._collect()
         pending, self._pending = self._pending, {}
         # Whatever belongs to vertices that are replaced by another number of them goes, unless it is assigned, too.
         if "V" in pending and len(pending["V"]) != len(self._mesh.V):
@@ -83,6 +118,9 @@ class Mesh:
         except Exception:
             self._pending = {name: array for name, array in pending.items() if array is not None}
             raise
+        self._forget([name for name, array in pending.items() if array is not self._lent.get(name)])
+        self._read.clear()
+        self._content = {name: array.copy() if name in pending else self._content[name] for name, array in self._lent.items()}
         labels = self._labels.get("L_gt" if self.m_vis._color_by == "gt" else "L_pred")
         if labels is not None and len(labels):
             self._mesh.assign(L=labels)
@@ -96,7 +134,7 @@ class Mesh:
     def _take(self, mesh: "_easypbr.Mesh") -> None:
         """Replaces arrays by those of a mesh that was computed."""
         arrays = {name: getattr(mesh, name) for name in _OWN}
-        self._mesh.assign(**{name: array if len(array) else None for name, array in arrays.items()})
+        self._put(**{name: array if len(array) else None for name, array in arrays.items()})
         self._labels.clear()
 
     def _changed(self, method: str, *arguments: Any, **named: Any) -> None:
@@ -106,6 +144,7 @@ class Mesh:
 
     def load_from_file(self, path: "str | os.PathLike[str]") -> None:
         self._mesh, self._pending, self.m_disk_path = _easypbr.Mesh(path), {}, os.fspath(path)
+        self._forget()
 
     read_obj = load_from_file
 
@@ -123,7 +162,12 @@ class Mesh:
         return other
 
     def is_empty(self) -> bool:
-        return len(self.V) == 0
+        V = self._pending.get("V")
+        return len(self._mesh.V if V is None else V) == 0
+
+    def _has_vertices(self) -> bool:
+        """Of its own, or of its children."""
+        return not self.is_empty() or any(child._has_vertices() for child in self._children)
 
     def sanity_check(self) -> None:
         """Raises ArgumentError when the arrays do not fit each other."""
@@ -166,12 +210,12 @@ class Mesh:
 
     def create_quad(self) -> None:
         corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
-        self._mesh.assign(V=corners, F=[[0, 1, 2], [0, 2, 3]], UV=(corners[:, :2] + 1) / 2)
+        self._put(V=corners, F=[[0, 1, 2], [0, 2, 3]], UV=(corners[:, :2] + 1) / 2)
 
     def create_line_strip_from_points(self, points: Sequence[ArrayLike]) -> None:
         V = np.array([np.asarray(point).ravel() for point in points], dtype=np.float64)
         first = np.arange(len(V) - 1)
-        self._mesh.assign(V=V, E=np.stack([first, first + 1], axis=1))
+        self._put(V=V, E=np.stack([first, first + 1], axis=1))
         self.m_vis.m_show_lines = True
 
     # Poses.
@@ -218,7 +262,7 @@ class Mesh:
         if len(stays):
             V = np.array(self.V)
             V[stays] = 0
-            self._mesh.assign(V=V)
+            self._put(V=V)
 
     # Size and place.
 
@@ -249,7 +293,7 @@ class Mesh:
 
     def recalculate_normals(self) -> None:
         mesh = self.handle()
-        mesh.assign(N=mesh.vertex_normals())
+        self._put(N=mesh.vertex_normals())
 
     def flip_normals(self) -> None:
         self._changed("flip_normals")
@@ -261,7 +305,7 @@ class Mesh:
         other = np.where(np.abs(N[:, :1]) < 0.9, [[1.0, 0, 0]], [[0, 0, 1.0]])
         U = np.cross(N, other)
         U *= tangent_length / np.sqrt(2) / np.linalg.norm(U, axis=1, keepdims=True)
-        mesh.assign(N=N, T=U, B=np.full(len(N), tangent_length / np.sqrt(2)))
+        self._put(N=N, T=U, B=np.full(len(N), tangent_length / np.sqrt(2)))
 
     def estimate_normals_from_neighbourhood(self, radius: float) -> None:
         """Of 16 neighbours each, whatever the radius."""
@@ -271,7 +315,7 @@ class Mesh:
 
     def color_solid2pervert(self) -> None:
         solid = (1.0, 206 / 255, 143 / 255) if self.m_vis.m_solid_color is None else self.m_vis.m_solid_color
-        self._mesh.assign(C=np.tile(np.asarray(solid, dtype=np.float32), (len(self.handle().V), 1)))
+        self._put(C=np.tile(np.asarray(solid, dtype=np.float32), (len(self.handle().V), 1)))
 
     def color_from_label_indices(self, labels: ArrayLike) -> None:
         self.L_pred = labels
@@ -282,7 +326,7 @@ class Mesh:
         mesh, data = self.handle(), _swapped(mat.to_cv32f().data)
         x = np.clip((mesh.UV[:, 0] * mat.cols).astype(int), 0, mat.cols - 1)
         y = np.clip(((1 - mesh.UV[:, 1]) * mat.rows).astype(int), 0, mat.rows - 1)
-        mesh.assign(C=data[y, x, :3])
+        self._put(C=data[y, x, :3])
 
     def _texture(self, name: str, source: "str | os.PathLike[str] | Mat") -> None:
         setattr(self._mesh.material, f"{name}_texture", _swapped(source.data) if isinstance(source, Mat) else os.fspath(source))
@@ -335,7 +379,7 @@ class Mesh:
         for name in ("F", "E"):
             rows = getattr(mesh, name)
             arrays[name] = number[rows[kept[rows].all(axis=1)]] if len(rows) else None
-        mesh.assign(**arrays)
+        self._put(**arrays)
         self._labels = {name: labels[kept] for name, labels in self._labels.items() if len(labels) == len(kept)}
 
     def remove_vertices_at_zero(self) -> None:

@@ -8,10 +8,28 @@ from numpy.typing import NDArray
 from ...errors import UnknownNameError
 from ...scene import Scene as OwnScene
 from .mesh import Mesh
+from .vis_options import VisOptions
 
 _shown: dict[str, Mesh] = {}
 #: What viewers ask before they draw; None: nobody has said.
 floor: dict[str, bool | None] = {"visible": None}
+
+
+class _FloorOptions(VisOptions):
+    """Options of the ground: whether it is visible."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)
+        if name == "m_is_visible":
+            floor["visible"] = bool(value)
+
+
+def _ground() -> Mesh:
+    """What scripts get as the mesh "grid_floor", to hide it."""
+    mesh = Mesh()
+    mesh.m_vis, mesh.name = _FloorOptions(), "grid_floor"
+    mesh.m_vis._values["m_is_visible"] = floor["visible"] is not False
+    return mesh
 
 
 def flush() -> None:
@@ -34,6 +52,8 @@ class Scene:
 
     @staticmethod
     def get_mesh_with_name(name: str) -> Mesh:
+        if name == "grid_floor" and name not in _shown:
+            return _ground()
         if name not in _shown:
             raise UnknownNameError(f"there is no mesh '{name}' in the scene: there are {', '.join(_shown) or 'none'}")
         return _shown[name]
@@ -81,7 +101,7 @@ class Scene:
 
     @staticmethod
     def _box() -> NDArray[Any]:
-        boxes = [mesh.handle().bounding_box() for mesh in _shown.values()]
+        boxes = [mesh.handle().bounding_box() for mesh in _shown.values() if mesh._has_vertices()]
         return np.array([np.min([box[0] for box in boxes], axis=0), np.max([box[1] for box in boxes], axis=0)]) if boxes else np.zeros((2, 3))
 
     @staticmethod

@@ -51,6 +51,10 @@ class Viewer:
         self._sent = np.eye(4)
         self._has_floor: bool | None = None
         self._values = values
+        #: What was handed over last.
+        self._exposure: float | None = None
+        fov = values.get("cam.fov")
+        self._fov = fov if isinstance(fov, float) else None
         self.m_viewport_size: ArrayLike = [1920, 1080]
         self.m_recorder, self.m_gui = Recorder(self), Gui()
         self.m_nr_drawn_frames = 0
@@ -81,18 +85,19 @@ class Viewer:
     @property
     def m_camera(self) -> Camera:
         """The camera; changes of it pin it."""
+        self._hand_over_lens()
         seen = self._seen()
         if self._camera is None:
             self._camera = Camera()
             if isinstance(fov := self._values.get("cam.fov"), float):
-                self._camera.m_fov = fov
+                self._camera._fov = fov
         if not self._camera._is_changed and seen is not None:
             # What is automatic, or was turned in the window.
             target = Scene.get_centroid() if np.allclose(self._sent, np.eye(4)) else self._camera.lookat()
             self._camera._T = seen
-            if not isinstance(self._values.get("cam.fov"), float):
+            if not self._camera._is_fov_changed:
                 width, height = self._size()
-                self._camera.m_fov = self.own.camera.fov_y_deg * width / height
+                self._camera._fov = self.own.camera.fov_y_deg * width / height
             self._camera._distance = float((target - seen[:3, 3]) @ -seen[:3, 2]) or 1.0
         return self._camera
 
@@ -106,7 +111,7 @@ class Viewer:
     def _seen(self) -> NDArray[Any] | None:
         flush()
         self._fit_size()
-        return None if Scene.nr_meshes() == 0 else np.array(self.own.camera.T_world_cam)
+        return np.array(self.own.camera.T_world_cam) if any(mesh._has_vertices() for mesh in Scene._all()) else None
 
     def _size(self) -> tuple[int, int]:
         width, height = (int(side) for side in np.asarray(self.m_viewport_size).ravel())
@@ -123,20 +128,32 @@ class Viewer:
         if floor["visible"] is not None and floor["visible"] != self._has_floor:
             self._has_floor = floor["visible"]
             self.own.settings.ground.mode = auto if self._has_floor else "none"
+        self._hand_over_lens()
         camera = self._camera
         if camera is None or not camera._is_changed:
             return
         width, height = self._size()
         self.own.camera = camera.camera(width / height)
-        if camera.m_exposure is not None:
-            self.own.settings.tonemap.exposure = float(camera.m_exposure)
         camera._is_changed, self._sent = False, camera.model_matrix()
+
+    def _hand_over_lens(self) -> None:
+        """Exposure and field of view, which leave an automatic camera automatic."""
+        camera = self._camera
+        if camera is not None and camera.m_exposure is not None and camera.m_exposure != self._exposure:
+            self._exposure = float(camera.m_exposure)
+            self.own.settings.tonemap.exposure = self._exposure
+        if camera is not None and camera._is_fov_changed:
+            self._fov, camera._is_fov_changed = camera.m_fov, False
+        if self._fov is not None:
+            width, height = self._size()
+            self.own.settings.camera.fov_y_deg = self._fov * height / width
+            self._fov = None
 
     @contextlib.contextmanager
     def _somewhere(self) -> Iterator[None]:
         """Gives an automatic camera a place while there is nothing to fit it to: the background is drawn."""
         camera = self.own.settings.camera
-        has_place = any(mesh.m_vis.m_is_visible for mesh in Scene._all()) or not isinstance(camera.position, Automatic) or len(camera.pose)
+        has_place = any(mesh.m_vis.m_is_visible and mesh._has_vertices() for mesh in Scene._all()) or not isinstance(camera.position, Automatic) or len(camera.pose)
         if has_place:
             yield
             return

@@ -120,7 +120,7 @@ class VisOptions:
         style.mode = mode or auto
         # A mesh of which nothing is to be shown is not shown.
         style.visible = bool(values["m_is_visible"]) and mode != ""
-        style.show_points = bool(values["m_show_points"]) if mode == "mesh" else auto
+        style.show_points = bool(values["m_show_points"]) if mode in ("mesh", "lines") else auto
         style.show_wireframe, style.show_normals = bool(values["m_show_wireframe"]), bool(values["m_show_normals"])
         style.overlay = bool((mode == "points" and values["m_overlay_points"]) or (mode == "lines" and values["m_overlay_lines"]))
         style.point_shape = "round" if values["m_points_as_circle"] else "square"
