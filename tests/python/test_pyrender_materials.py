@@ -210,6 +210,21 @@ def test_a_given_material_is_copied_and_replaces_colors(renderer):
     assert all(p.material is not material and p.color_0 is None for p in made.primitives)
 
 
+def test_textures_are_exchanged(renderer):
+    mesh = pyrender.Mesh.from_trimesh(square(image=None), material=plain())
+    scene, _ = scene_of(mesh)
+    material = mesh.primitives[0].material
+    shown = lambda: middle(renderer.render(scene, flags=RenderFlags.FLAT)[0])  # noqa: E731
+    material.baseColorTexture = np.full((2, 2, 3), (255, 0, 0), np.uint8)
+    assert shown() == [255, 0, 0]
+    material.baseColorTexture.source = np.full((2, 2, 3), (0, 0, 255), np.uint8)
+    assert shown() == [0, 0, 255]
+    material.baseColorTexture = None
+    assert shown() == [255, 255, 255]
+    with pytest.raises(ValueError, match="alphaMode: expected OPAQUE, MASK, BLEND, got 'blend'"):
+        material.alphaMode = "blend"
+
+
 @pytest.mark.parametrize("mode", ["L", "P", "RGBA", "LA", "1"])
 def test_images_of_pillow_are_textures_whatever_their_mode(mode):
     pixels = np.zeros((2, 2, 3), np.uint8)
@@ -314,6 +329,19 @@ def test_points_by_indices(renderer):
     primitive.indices = [3]
     with pytest.raises(ValueError, match="expected indices from 0 to 2, got 3 to 3"):
         renderer.render(scene)
+
+
+def test_points_without_a_place_are_left_out(renderer):
+    points = np.array([[0.0, 0, 0], [np.nan, 0, 0], [0.5, np.inf, 0]])
+    scene, _ = scene_of(pyrender.Mesh.from_points(points, colors=np.eye(3)))
+    assert (renderer.render(scene)[1] > 0).sum() == 1
+
+
+@pytest.mark.parametrize("mode, indices", [(4, np.zeros((0, 3), int)), (5, [0]), (1, np.zeros((0, 2), int))])
+def test_primitives_without_elements_show_nothing(renderer, mode, indices):
+    scene, _ = scene_of(pyrender.Mesh([pyrender.Primitive(np.zeros((3, 3)), mode=mode, indices=indices)]))
+    color, depth = renderer.render(scene)
+    assert (depth == 0).all() and (color == 0).all()
 
 
 def test_lists_and_other_types_are_taken_as_arrays(renderer):

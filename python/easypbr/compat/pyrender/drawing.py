@@ -29,7 +29,8 @@ _SAMPLES = 4
 def _state(primitive: Primitive, is_flat: bool) -> tuple[list[Any], tuple[Any, ...]]:
     """What a primitive was made from: objects that are compared by identity, and values."""
     p, material = primitive, primitive.material
-    objects = [p.positions, p.normals, p.indices, p.color_0, p.texcoord_0, p.poses, material, *material.textures()]
+    images = [None if texture is None else texture.source for texture in material.textures()]
+    objects = [p.positions, p.normals, p.indices, p.color_0, p.texcoord_0, p.poses, material, *images]
     color, metallic, roughness = material._color_and_numbers()
     values = (tuple(color), metallic, roughness, tuple(material.emissiveFactor), material.alphaMode, material.alphaCutoff,
               material.doubleSided, material.smooth, p.mode, is_flat)  # fmt: skip

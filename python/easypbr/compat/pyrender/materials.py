@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _easypbr
+from ...errors import ArgumentError
 from .colors import color, decoded
 
 
@@ -85,6 +86,14 @@ def _fraction(number: float) -> float:
     return float(np.clip(number, 0, 1))
 
 
+#: Textures of materials and the channels that they are made of.
+_CHANNELS = {
+    "normalTexture": "RGB", "occlusionTexture": "R", "emissiveTexture": "RGB", "baseColorTexture": "RGBA",
+    "metallicRoughnessTexture": "GB", "diffuseTexture": "RGBA", "specularGlossinessTexture": "RGBA",
+}  # fmt: skip
+_ALPHA_MODES = ("OPAQUE", "MASK", "BLEND")
+
+
 # The order of the fields is that of pyrender's positional arguments.
 @dataclass(eq=False, repr=False)
 class Material:
@@ -101,12 +110,17 @@ class Material:
     smooth: bool = True
     wireframe: bool = False
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in _CHANNELS:
+            value = texture_of(value, _CHANNELS[name])
+        elif name == "alphaMode":
+            value = "OPAQUE" if value is None else value
+            if value not in _ALPHA_MODES:
+                raise ArgumentError(f"a material's alphaMode: expected {', '.join(_ALPHA_MODES)}, got '{value}'")
+        super().__setattr__(name, value)
+
     def __post_init__(self) -> None:
-        self.normalTexture = texture_of(self.normalTexture, "RGB")
-        self.occlusionTexture = texture_of(self.occlusionTexture, "R")
-        self.emissiveTexture = texture_of(self.emissiveTexture, "RGB")
         self.emissiveFactor = color(self.emissiveFactor, 3, 0.0)
-        self.alphaMode = "OPAQUE" if self.alphaMode is None else self.alphaMode
         self.alphaCutoff = 0.5 if self.alphaCutoff is None else float(self.alphaCutoff)
 
     def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
@@ -148,7 +162,7 @@ class Material:
         return None
 
     def textures(self) -> tuple[Any, ...]:
-        """What decides whether the images are still the same."""
+        """Its textures, or None for each that it does not have."""
         return self.normalTexture, self.occlusionTexture, self.emissiveTexture, self._color_texture()
 
 
@@ -165,10 +179,8 @@ class MetallicRoughnessMaterial(Material):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.baseColorFactor = color(self.baseColorFactor, 4, 1.0)
-        self.baseColorTexture = texture_of(self.baseColorTexture, "RGBA")
         self.metallicFactor = 1.0 if self.metallicFactor is None else float(self.metallicFactor)
         self.roughnessFactor = 1.0 if self.roughnessFactor is None else float(self.roughnessFactor)
-        self.metallicRoughnessTexture = texture_of(self.metallicRoughnessTexture, "GB")
 
     def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
         return color(self.baseColorFactor, 4, 1.0), _fraction(self.metallicFactor), _fraction(self.roughnessFactor)
@@ -204,10 +216,8 @@ class SpecularGlossinessMaterial(Material):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.diffuseFactor = color(self.diffuseFactor, 4, 1.0)
-        self.diffuseTexture = texture_of(self.diffuseTexture, "RGBA")
         self.specularFactor = color(self.specularFactor, 3, 1.0)
         self.glossinessFactor = float(self.glossinessFactor)
-        self.specularGlossinessTexture = texture_of(self.specularGlossinessTexture, "RGBA")
 
     def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
         return color(self.diffuseFactor, 4, 1.0), 0.0, _fraction(1 - self.glossinessFactor)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
+from ...conversions.maker import finite_rows
 from ...errors import ArgumentError
 from .bounded import Bounded
 from .colors import colors, encoded
@@ -109,13 +110,15 @@ class Primitive(Bounded):
     def _order(self) -> NDArray[Any]:
         return np.arange(len(self.positions)) if self.indices is None else self.indices.ravel()
 
-    def _points(self) -> NDArray[Any]:
-        """Indices of the points that are drawn."""
+    def _points(self) -> NDArray[Any] | None:
+        """Indices of the points that are drawn, None: all of them. Those without a finite position are left out with a warning;
+        OpenGL does not draw them either."""
         order = self._order()
         if len(order) and not (order.min() >= 0 and order.max() < len(self.positions)):
             last = len(self.positions) - 1
             raise ArgumentError(f"a Primitive: expected indices from 0 to {last}, got {order.min()} to {order.max()}")
-        return order
+        kept = finite_rows(self.positions[order], False)
+        return order[kept] if kept is not None else None if self.indices is None else order
 
     def elements(self) -> tuple[str, NDArray[Any] | None]:
         """ "F", "E" or "V", and the indices of triangles or lines."""
@@ -149,8 +152,11 @@ class Primitive(Bounded):
             arrays["N"] = self.normals
         if elements is not None:
             arrays[kind] = elements
-        elif self.indices is not None:
-            arrays = {name: array[self._points()] for name, array in arrays.items() if array is not None}
+        else:
+            drawn = self._points()
+            arrays = {name: array if array is None or drawn is None else array[drawn] for name, array in arrays.items()}
+        if elements is not None and len(elements) == 0:
+            arrays = {}  # Vertices alone would be drawn as points.
         mesh = _easypbr.Mesh()
         mesh.assign(**{name: array for name, array in arrays.items() if array is not None})
         self.material.put(mesh.material, is_flat)
