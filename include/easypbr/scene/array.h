@@ -4,11 +4,24 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/math.h"
 
 namespace easypbr {
 
 uint64_t next_revision();  // see core/hash.h
+
+namespace detail {
+/// Throws ArgumentError unless a matrix has these columns. Eigen itself checks it in debug builds alone.
+inline void require_columns(Eigen::Index rows, Eigen::Index cols, int expected) {
+    if (cols != expected)
+        throw ArgumentError("array: expected n x " + std::to_string(expected) + ", got " +
+                            std::to_string(rows) + " x " + std::to_string(cols));
+}
+}  // namespace detail
 
 /// Row-major matrix with a fixed or dynamic number of columns. Copies share the data; the data never change.
 /// It is an Eigen::Map, so it goes wherever an Eigen::MatrixBase goes. Every new array has a new revision.
@@ -26,11 +39,12 @@ class Array
     /// Takes the matrix over without a copy when it is moved in.
     Array(Dense values) : Array(std::make_shared<const Dense>(std::move(values))) {}
 
-    /// A copy of any Eigen expression of fitting shape.
+    /// A copy of any Eigen expression of fitting shape: n x Cols, or n x 1 or 1 x n for one column. Without
+    /// rows any number of columns fits. Throws ArgumentError for other shapes.
     template <class Derived>
     requires(!std::is_base_of_v<Map, Derived> && !std::is_same_v<Dense, Derived>)
-        Array(const Eigen::MatrixBase<Derived>& values)
-        : Array(Dense(values.template cast<Scalar>())) {}
+        Array(const Eigen::DenseBase<Derived>& values)
+        : Array(dense_of(values.derived())) {}
 
     /// A view of memory that `owner` keeps alive and unchanged.
     Array(std::shared_ptr<const void> owner, const Scalar* data, Eigen::Index rows, Eigen::Index cols)
@@ -53,6 +67,20 @@ class Array
     uint64_t revision() const { return revision_; }
 
   private:
+    template <class Derived>
+    static Dense dense_of(const Derived& values) {
+        // What Eigen knows when it compiles, it checks then.
+        if constexpr (Cols == Eigen::Dynamic || Derived::ColsAtCompileTime != Eigen::Dynamic) {
+            return Dense(values.template cast<Scalar>());
+        } else {
+            if (values.rows() == 0) return Dense(0, Cols);
+            if constexpr (Cols == 1)
+                if (values.rows() == 1) return Dense(values.row(0).transpose().template cast<Scalar>());
+            detail::require_columns(values.rows(), values.cols(), Cols);
+            return Dense(values.template cast<Scalar>());
+        }
+    }
+
     explicit Array(std::shared_ptr<const Dense> dense)
         : Map(dense->data(), dense->rows(), dense->cols()), revision_(next_revision()) {
         owner_ = std::move(dense);

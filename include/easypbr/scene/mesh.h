@@ -62,6 +62,14 @@ class Mesh {
     /// recentred: what is subtracted from them is added to the offset, so that offset + V does not move.
     void set_positions(
         const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& positions);
+    /// The same of a matrix with a dynamic number of columns. Throws ArgumentError unless there are 3.
+    template <class Derived>
+    requires(Derived::ColsAtCompileTime ==
+             Eigen::Dynamic) void set_positions(const Eigen::MatrixBase<Derived>& positions) {
+        using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+        detail::require_columns(positions.rows(), positions.cols(), 3);
+        set_positions(Positions(positions.template cast<double>()));
+    }
     Vec3d offset() const;
     void set_offset(const Vec3d& offset);
     void set_N(Array3f N);
