@@ -37,8 +37,8 @@ TEST(KdTree, FindsWhatTryingAllFinds) {
 TEST(KdTree, OrdersEquallyFarPointsByIndex) {
     const Array3f points = Array3f::Dense{{0, 1, 0}, {5, 5, 5}, {1, 0, 0}, {0, 0, 0}, {-1, 0, 0}, {0, 0, 1}};
     const KdTree::Nearest nearest = KdTree(points).nearest(Array3f(Array3f::Dense::Zero(1, 3)), 5);
-    EXPECT_EQ(nearest.indices, (KdTree::Rows<int32_t>{{3, 0, 2, 4, 5}}));
-    EXPECT_EQ(nearest.distances, (KdTree::Rows<float>{{0, 1, 1, 1, 1}}));
+    EXPECT_EQ(nearest.indices, (KdTree::Rows<int32_t>::Dense{{3, 0, 2, 4, 5}}));
+    EXPECT_EQ(nearest.distances, (KdTree::Rows<float>::Dense{{0, 1, 1, 1, 1}}));
 }
 
 TEST(KdTree, RadiusIncludesItsBorder) {

@@ -2,10 +2,13 @@
 the same picture as the Python program of the same five lines."""
 import os
 import pathlib
+import platform
 import shlex
 import shutil
 import subprocess
 import sys
+
+import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OUTSIDE = pathlib.Path(__file__).parent / "outside"
@@ -76,6 +79,33 @@ def test_pkg_config_serves_builds_without_cmake(tmp_path):
     assert (tmp_path / "cpp.png").stat().st_size > 1000
     missing = subprocess.run(["pkg-config", "--exists", "easypbr >= 99"], env=environment, check=False)
     assert missing.returncode != 0
+
+
+@pytest.fixture(scope="module")
+def package_flags(tmp_path_factory):
+    """What pkg-config says of an installed library, and where the library is."""
+    prefix = tmp_path_factory.mktemp("prefix")
+    run("cmake", "--install", ROOT / "build", "--prefix", prefix, cwd=prefix)
+    (found,) = prefix.rglob("easypbr.pc")
+    ask = ["pkg-config", "--cflags", "--libs", "easypbr"]
+    environment = {**os.environ, "PKG_CONFIG_PATH": str(found.parent)}
+    flags = shlex.split(subprocess.run(ask, env=environment, capture_output=True, text=True, check=True).stdout)
+    return [*flags, f"-Wl,-rpath,{found.parent.parent}"]
+
+
+@pytest.mark.parametrize("flags", [["-O1", "-march=x86-64-v3"], ["-O1", "-fsanitize=address"], ["-O0", "-DEIGEN_DONT_VECTORIZE"]],
+                         ids=lambda flags: flags[1])
+def test_programs_with_other_flags_share_arrays_with_the_library(package_flags, tmp_path, flags):
+    """Eigen aligns and allocates matrices in another way with them: each side has to free what it has allocated."""
+    if "-march=x86-64-v3" in flags and platform.machine() != "x86_64":
+        pytest.skip("an instruction set of x86-64")
+    run("c++", "-std=c++20", *flags, OUTSIDE / "arrays.cpp", *package_flags, "-o", "arrays", cwd=tmp_path)
+    if "-march=x86-64-v3" in flags and not {"avx2", "fma", "bmi2"} <= set(pathlib.Path("/proc/cpuinfo").read_text().split()):
+        pytest.skip("the processor has no AVX2")
+    # Leaks are not what is looked for, and cannot be under a debugger.
+    environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}
+    done = subprocess.run([tmp_path / "arrays"], env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "4.5\n"), done.stderr
 
 
 def test_a_part_of_another_project_is_the_library_alone(tmp_path):

@@ -1,4 +1,5 @@
 """The installed headers: few, without what the library is made of, and each can be included alone."""
+import platform
 import re
 import shutil
 import subprocess
@@ -53,6 +54,19 @@ def test_headers_need_no_other_before_them(include, tmp_path, backwards):
     names = sorted(headers(include), reverse=backwards)
     (tmp_path / "all.cpp").write_text("".join(f"#include <{name}>\n" for name in names))
     compile_text(include, tmp_path, "all.cpp")
+
+
+@pytest.mark.parametrize("flag", ["-march=x86-64-v3", "-DEIGEN_DONT_VECTORIZE"])
+def test_another_layout_of_eigen_is_an_error_that_names_the_way_out(include, tmp_path, flag):
+    """Such a program would crash: its vectors, and types that have them, are aligned in another way than the library's."""
+    if flag.startswith("-march") and platform.machine() != "x86_64":
+        pytest.skip("an instruction set of x86-64")
+    (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
+    command = [COMPILER, *FLAGS, "-isystem", eigen(), "-I", include, flag, "array.cpp"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode != 0
+    advice = re.search(r"EasyPBR: compile all of the program with (-D\w+=\d+)", done.stderr)[1]
+    run(*command, advice, cwd=tmp_path)
 
 
 def test_a_private_header_is_refused(tmp_path):

@@ -4,6 +4,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+// How matrices and vectors of fixed size are aligned, and so the layout of all that has them, would depend on
+// the compiler's flags: -mavx, -march, EIGEN_DONT_VECTORIZE. The CMake target and easypbr.pc define it.
+#if EIGEN_MAX_STATIC_ALIGN_BYTES != 16
+#error "EasyPBR: compile all of the program with -DEIGEN_MAX_STATIC_ALIGN_BYTES=16, as the library is"
+#endif
+
 namespace easypbr {
 
 using Vec2 = Eigen::Vector2f;

@@ -17,7 +17,7 @@ namespace easypbr {
 class KdTree {
   public:
     template <class Scalar>
-    using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using Rows = Array<Scalar, Eigen::Dynamic>;
 
     /// The k nearest points of each query, the nearest first, equally far ones by index.
     struct Nearest {

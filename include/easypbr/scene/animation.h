@@ -43,7 +43,7 @@ struct AnimationChannel {
     Interpolation interpolation = Interpolation::linear;
     std::vector<float> times;  ///< seconds, rising
     /// One row for each time, three for cubic splines; rotations are x, y, z, w.
-    ArrayXf::Dense values;
+    ArrayXf values;
     int parameter = 0;  ///< of a material, light or camera: the first one
 };
 
@@ -55,7 +55,7 @@ struct Animation {
 
 /// The value of a channel at a time; before the first key that of the first, after the last that of the last.
 /// Rotations have unit length.
-Eigen::VectorXd sample(const AnimationChannel& channel, double time_s);
+Array1d sample(const AnimationChannel& channel, double time_s);
 
 /// How a mesh's vertices follow joints and morph targets.
 struct Deformation {

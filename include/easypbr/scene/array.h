@@ -21,6 +21,18 @@ inline void require_columns(Eigen::Index rows, Eigen::Index cols, int expected) 
         throw ArgumentError("array: expected n x " + std::to_string(expected) + ", got " +
                             std::to_string(rows) + " x " + std::to_string(cols));
 }
+
+/// How Eigen allocates in a program that is compiled with these flags: 0 by malloc(), else with this
+/// alignment.
+inline constexpr int allocation = EIGEN_MALLOC_ALREADY_ALIGNED ? 0 : EIGEN_DEFAULT_ALIGN_BYTES;
+
+/// Keeps a matrix. Library and program each make and free their own: those of other flags are other types, so
+/// that the linker does not take the functions of one for those of the other.
+template <class Dense, int>
+struct Kept {
+    explicit Kept(Dense given) : values(std::move(given)) {}
+    Dense values;
+};
 }  // namespace detail
 
 /// Row-major matrix with a fixed or dynamic number of columns. Copies share the data; the data never change.
@@ -37,7 +49,7 @@ class Array
     Array() : Map(nullptr, 0, Cols == Eigen::Dynamic ? 0 : Cols) {}
 
     /// Takes the matrix over without a copy when it is moved in.
-    Array(Dense values) : Array(std::make_shared<const Dense>(std::move(values))) {}
+    Array(Dense values) : Array(std::make_shared<const Kept>(std::move(values))) {}
 
     /// A copy of any Eigen expression of fitting shape: n x Cols, or n x 1 or 1 x n for one column. Without
     /// rows any number of columns fits. Throws ArgumentError for other shapes.
@@ -67,6 +79,8 @@ class Array
     uint64_t revision() const { return revision_; }
 
   private:
+    using Kept = detail::Kept<Dense, detail::allocation>;
+
     template <class Derived>
     static Dense dense_of(const Derived& values) {
         // What Eigen knows when it compiles, it checks then.
@@ -81,9 +95,9 @@ class Array
         }
     }
 
-    explicit Array(std::shared_ptr<const Dense> dense)
-        : Map(dense->data(), dense->rows(), dense->cols()), revision_(next_revision()) {
-        owner_ = std::move(dense);
+    explicit Array(std::shared_ptr<const Kept> kept)
+        : Map(kept->values.data(), kept->values.rows(), kept->values.cols()), revision_(next_revision()) {
+        owner_ = std::move(kept);
     }
 
     std::shared_ptr<const void> owner_;
@@ -95,6 +109,7 @@ using Array2f = Array<float, 2>;
 using Array3f = Array<float, 3>;
 using Array4f = Array<float, 4>;
 using ArrayXf = Array<float, Eigen::Dynamic>;
+using Array1d = Array<double, 1>;
 using Array1i = Array<int32_t, 1>;
 using Array2i = Array<int32_t, 2>;
 using Array3i = Array<int32_t, 3>;

@@ -100,23 +100,24 @@ Eigen::Index KdTree::size() const {
 KdTree::Nearest KdTree::nearest(const Array3f& queries, int k) const {
     geometry::require_between("nearest neighbours: k", k, 1, size());
     require_finite("nearest neighbours", queries);
-    Nearest result{Rows<int32_t>(queries.rows(), k), Rows<float>(queries.rows(), k)};
+    Rows<int32_t>::Dense all_indices(queries.rows(), k);
+    Rows<float>::Dense all_distances(queries.rows(), k);
     parallel_chunks(size_t(queries.rows()), query_grain, [&](size_t begin, size_t end) {
         std::vector<uint32_t> indices(static_cast<size_t>(k));
         for (size_t i = begin; i < end; ++i) {
             const auto row = Eigen::Index(i);
-            float* distances = result.distances.row(row).data();
+            float* distances = all_distances.row(row).data();
             nanoflann::KNNResultSet<float, uint32_t> found(static_cast<size_t>(k));
             found.init(indices.data(), distances);
             index_->tree.findNeighbors(found, queries.row(row).data(), {});
             for (int j = 0; j < k; ++j) {
-                result.indices(row, j) = index_->original[indices[size_t(j)]];
+                all_indices(row, j) = index_->original[indices[size_t(j)]];
                 distances[j] = std::sqrt(distances[j]);
             }
-            order_ties(result.indices.row(row).data(), distances, k);
+            order_ties(all_indices.row(row).data(), distances, k);
         }
     });
-    return result;
+    return {std::move(all_indices), std::move(all_distances)};
 }
 
 KdTree::Within KdTree::within(const Array3f& queries, float radius) const {

@@ -17,8 +17,9 @@ struct LocalTree {
 
 nb::tuple find_nearest(const LocalTree& local, const ArrayLike& queries, int k) {
     const Array3f points = to_local(queries, {"queries", 3, 3}, local.offset);
-    KdTree::Nearest found = released([&] { return local.tree.nearest(points, k); });
-    return nb::make_tuple(owning_array(std::move(found.distances)), owning_array(std::move(found.indices)));
+    const KdTree::Nearest found = released([&] { return local.tree.nearest(points, k); });
+    return nb::make_tuple(owning_array(KdTree::Rows<float>::Dense(found.distances)),
+                          owning_array(KdTree::Rows<int32_t>::Dense(found.indices)));
 }
 
 nb::tuple find_within(const LocalTree& local, const ArrayLike& queries, float radius) {

@@ -170,7 +170,7 @@ void normalize(Array3f::Dense& N) {
 
 }  // namespace
 
-Eigen::VectorXd sample(const AnimationChannel& channel, double time_s) {
+Array1d sample(const AnimationChannel& channel, double time_s) {
     Eigen::VectorXd value = sample_raw(channel, time_s);
     if (channel.property != AnimatedProperty::rotation) return value;
     const double length = value.norm();
