@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace easypbr::image_test {
 
@@ -66,6 +67,30 @@ TEST(Image, HalvesByAveraging) {
     EXPECT_EQ(values_of<float>(half_size(odd)), (std::vector<float>{4}));
     const Image column = image_of<float>(1, 2, 1, PixelType::f32, {2, 4});
     EXPECT_EQ(values_of<float>(half_size(column)), (std::vector<float>{3}));
+}
+
+TEST(Image, OnlyFloatsAreHalved) {
+    EXPECT_THROW(half_size(Image(4, 4, 3, PixelType::u8)), ArgumentError);
+    EXPECT_THROW(half_size(Image(4, 4, 3, PixelType::u16)), ArgumentError);
+    EXPECT_THROW(half_size(Image()), ArgumentError);
+}
+
+TEST(Image, IsEmptyWhenItWasMovedFrom) {
+    Image from = image_of<uint8_t>(2, 1, 1, PixelType::u8, {10, 20});
+    Image to = std::move(from);
+    EXPECT_EQ(values_of<uint8_t>(to), (std::vector<uint8_t>{10, 20}));
+    EXPECT_TRUE(from.empty());
+    EXPECT_EQ(from.width(), 0);
+    EXPECT_EQ(from.height(), 0);
+    EXPECT_EQ(from.channels(), 0);
+    EXPECT_THROW(with_channels(from, 4), ArgumentError);
+    Image assigned(3, 3, 4, PixelType::f32);
+    assigned = std::move(to);
+    EXPECT_EQ(values_of<uint8_t>(assigned), (std::vector<uint8_t>{10, 20}));
+    EXPECT_TRUE(to.empty());
+    EXPECT_EQ(to.width(), 0);
+    from = assigned;
+    EXPECT_EQ(values_of<uint8_t>(from), values_of<uint8_t>(assigned));
 }
 
 TEST(Compare, MeasuresEveryDifference) {

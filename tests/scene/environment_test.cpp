@@ -53,6 +53,17 @@ TEST(Equirect, UvAndDirectionAreInverse) {
     }
 }
 
+TEST(Environment, EmptyOnesHaveNothing) {
+    const Environment none;
+    EXPECT_TRUE(none.empty());
+    EXPECT_TRUE(none.image().empty());
+    EXPECT_EQ(none.name(), "");
+    EXPECT_EQ(none.hash(), "");
+    EXPECT_FALSE(none.sun());
+    EXPECT_TRUE(none.without_sun().empty());
+    EXPECT_EQ(none.irradiance_over_pi(Vec3::UnitY()), Vec3(0, 0, 0));
+}
+
 TEST(Environment, ConstantRadianceIsItsOwnIrradianceOverPi) {
     // Pixels are integrated exactly, so that even 5 x 3 of them lose nothing; tolerance: float coefficients.
     const Environment environment(picture(5, 3, [](const Vec3&) { return Vec3(0.7f, 1.0f, 2.0f); }));

@@ -4,6 +4,8 @@
 
 #include <limits>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/scene.h"
@@ -35,6 +37,21 @@ std::string message_of(Change&& change) {
 }
 
 }  // namespace
+
+TEST(Mesh, StaysTheSameObjectWhenAHandleIsMovedFrom) {
+    std::vector<Mesh> meshes{Mesh(triangle())};
+    Mesh taken = std::move(meshes[0]);
+    EXPECT_EQ(meshes[0], taken);
+    EXPECT_EQ(meshes[0].V().rows(), 3);
+    Mesh assigned;
+    assigned = std::move(taken);
+    EXPECT_EQ(taken, assigned);
+    Scene scene;
+    Scene moved = std::move(scene);
+    scene.show(taken, "triangle");
+    EXPECT_TRUE(moved.contains("triangle"));
+    EXPECT_EQ(moved.snapshot().objects.size(), 1u);
+}
 
 TEST(Mesh, AcceptsWhatFitsTogether) {
     MeshData data = triangle();

@@ -1,11 +1,13 @@
 #include "easypbr/scene/normals.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
 #include <cmath>
 #include <random>
 
+#include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
 #include "easypbr/geometry/primitives.h"
 
@@ -129,6 +131,25 @@ TEST(VertexNormals, NoVerticesAndNoFacesAreFine) {
     EXPECT_EQ(vertex_normals({}, {}).rows(), 0);
     EXPECT_EQ(vertex_normals(Array3f::Dense(Array3f::Dense::Zero(3, 3)), {}).row(2),
               Eigen::RowVector3f(0, 0, 1));
+}
+
+TEST(VertexNormals, IndicesOutOfRangeAreRefused) {
+    const Array3f V = Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (const int32_t index : {-1, 3, 99'999'999}) {
+        const Array3i F = Array3i::Dense{{0, 1, 2}, {0, 1, index}};
+        try {
+            vertex_normals(V, F);
+            ADD_FAILURE() << index;
+        } catch (const ArgumentError& error) {
+            EXPECT_EQ(error.what(), fmt::format("mesh array F: expected vertex indices from 0 to 2, got {} "
+                                                "in row 1 of 2",
+                                                index));
+        }
+        EXPECT_THROW(face_normals(V, F), ArgumentError) << index;
+        MeshData mesh;
+        mesh.V = V, mesh.F = F, mesh.source_vertex = Array1i::Dense{{0}, {1}, {0}};
+        EXPECT_THROW(smooth_normals(mesh), ArgumentError) << index;
+    }
 }
 
 TEST(VertexNormals, DoNotDependOnTheNumberOfThreads) {

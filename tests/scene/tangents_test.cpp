@@ -165,6 +165,9 @@ TEST(CornerTangents, WrongShapesAreRefused) {
     TwoSquares sheet(0, 1, 2);
     EXPECT_THROW(corner_tangents(sheet.V, {}, sheet.UV, sheet.F), ArgumentError);
     EXPECT_THROW(corner_tangents(sheet.V, sheet.N, {}, sheet.F), ArgumentError);
+    Array3i::Dense beyond = sheet.F;
+    beyond(1, 2) = int32_t(sheet.V.rows());
+    EXPECT_THROW(corner_tangents(sheet.V, sheet.N, sheet.UV, beyond), ArgumentError);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "easypbr/core/error.h"
@@ -27,6 +28,15 @@ class Image {
     /// A zero-filled image. Throws ArgumentError unless 1 <= width, height <= max_image_side and 1 <=
     /// channels <= 4.
     Image(int width, int height, int channels, PixelType type);
+
+    Image(const Image& other) = default;
+    Image& operator=(const Image& other) = default;
+    /// The image that was moved from is empty: 0 x 0 without channels.
+    Image(Image&& other) noexcept { swap(other); }
+    Image& operator=(Image&& other) noexcept {
+        Image(std::move(other)).swap(*this);
+        return *this;
+    }
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -62,6 +72,14 @@ class Image {
     }
 
   private:
+    void swap(Image& other) noexcept {
+        std::swap(width_, other.width_);
+        std::swap(height_, other.height_);
+        std::swap(channels_, other.channels_);
+        std::swap(type_, other.type_);
+        data_.swap(other.data_);
+    }
+
     template <class T>
     void require() const {
         constexpr PixelType wanted = sizeof(T) == 1   ? PixelType::u8
@@ -89,7 +107,8 @@ Image to_linear_f32(const Image& image);
 /// Puts 0 where a value of an f32 image is NaN or infinite; returns how many there were.
 size_t replace_non_finite(Image& image);
 
-/// Every second row and column averaged in 2x2 boxes, as for mip levels (at least 1x1). f32 only.
+/// Every second row and column averaged in 2x2 boxes, as for mip levels (at least 1x1). Throws ArgumentError
+/// unless the pixels are f32.
 Image half_size(const Image& image);
 
 struct ImageDifference {

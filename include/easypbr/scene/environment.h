@@ -24,7 +24,8 @@ struct Sun {
     float angular_radius_deg = 0;
 };
 
-/// Immutable, shared by handle. Empty when default-constructed.
+/// Immutable, shared by handle. Empty when default-constructed: its image is empty, its name and hash are "",
+/// nothing shines.
 class Environment {
   public:
     Environment() = default;
@@ -53,6 +54,7 @@ class Environment {
   private:
     struct Split;
     struct Data;
+    const Data& data() const;
     const Split& split() const;
     std::shared_ptr<const Data> data_;
 };

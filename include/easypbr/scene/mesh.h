@@ -22,7 +22,8 @@ inline constexpr int max_mesh_depth = 250;
 /// Throws ArgumentError beyond max_mesh_depth: a mesh is its own descendant.
 void require_mesh_depth(int depth);
 
-/// A shared object: copying a handle shares it, clone() copies it. All members may be called from any thread.
+/// A shared object: copying or moving a handle shares it, clone() copies it. All members may be called from
+/// any thread.
 class Mesh {
   public:
     /// An empty mesh.
@@ -36,6 +37,10 @@ class Mesh {
     Mesh(Array3f V, Array3i F);
 
     explicit Mesh(MeshData data);
+
+    // Moving copies: a handle always has its object.
+    Mesh(const Mesh& other) = default;
+    Mesh& operator=(const Mesh& other) = default;
 
     /// The data as they are now; never changes afterwards.
     std::shared_ptr<const MeshData> snapshot() const;

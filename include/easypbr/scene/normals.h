@@ -10,7 +10,8 @@ namespace easypbr {
 
 /// Unit vertex normals (n x 3): the sum of the adjacent faces' normals weighted by area times the corner's
 /// angle. Faces without area count nothing; a vertex without any gets (0, 0, 1). The result does not depend
-/// on the number of threads, and scaling V by a power of two leaves it the same bit for bit.
+/// on the number of threads, and scaling V by a power of two leaves it the same bit for bit. Throws
+/// ArgumentError when a vertex index is out of range, as the functions below do.
 Array3f vertex_normals(const Array3f& V, const Array3i& F);
 
 /// vertex_normals() of a mesh: vertices that were split from one (source_vertex), as at seams of texture

@@ -40,10 +40,13 @@ struct SceneSnapshot {
     Support support(const Directions& directions) const;
 };
 
-/// Shared by handle; all members may be called from any thread.
+/// Shared by handle: copies, moved ones too, are the same scene. All members may be called from any thread.
 class Scene {
   public:
     Scene();
+    // Moving copies: a handle always has its scene.
+    Scene(const Scene& other) = default;
+    Scene& operator=(const Scene& other) = default;
 
     /// Shows a mesh under a name; the same name again replaces it. A mesh that is the child of another one
     /// moves with its parent, and is drawn once when both are shown.

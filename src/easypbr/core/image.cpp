@@ -122,6 +122,9 @@ size_t replace_non_finite(Image& image) {
 }
 
 Image half_size(const Image& image) {
+    if (image.type() != PixelType::f32)
+        throw ArgumentError(fmt::format("half_size: expected an image of 32 bits per channel, got {} bits",
+                                        8 * size_of(image.type())));
     Image out(std::max(1, image.width() / 2), std::max(1, image.height() / 2), image.channels(),
               PixelType::f32);
     const int channels = image.channels();

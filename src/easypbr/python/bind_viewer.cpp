@@ -35,7 +35,8 @@ nb::dict layers(SharedViewer& self, const std::vector<std::string>& names, const
     const std::optional<Vec2i> pixels = optional_size(size);
     auto images = self.run([&](Viewer& viewer) { return viewer.session().render_layers(names, pixels); });
     nb::dict result;
-    for (const std::string& name : names) result[name.c_str()] = to_numpy(std::move(images.at(name)));
+    for (const std::string& name : names)
+        if (!result.contains(name.c_str())) result[name.c_str()] = to_numpy(std::move(images.at(name)));
     return result;
 }
 

@@ -177,19 +177,26 @@ Environment::Environment(Image equirect, std::string name) {
     data_ = std::move(data);
 }
 
+const Environment::Data& Environment::data() const {
+    static const Data none;
+    return empty() ? none : *data_;
+}
+
 const Image& Environment::image() const {
-    return data_->image;
+    return data().image;
 }
 
 const std::string& Environment::name() const {
-    return data_->name;
+    return data().name;
 }
 
 const std::string& Environment::hash() const {
-    return data_->hash;
+    return data().hash;
 }
 
 const Environment::Split& Environment::split() const {
+    static const Split none;
+    if (empty()) return none;
     Split& split = *data_->split;
     // Isolated: while the loops inside wait, this thread must not take up a task that asks for the same.
     tbb::this_task_arena::isolate([&] {

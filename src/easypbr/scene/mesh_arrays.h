@@ -21,6 +21,9 @@ Array<Scalar, Cols> rows_of(const Array<Scalar, Cols>& array, std::span<const in
 /// The same for all that splats have beside their means.
 SplatArrays rows_of(const SplatArrays& splats, std::span<const int32_t> rows);
 
+/// Throws ArgumentError that names the first row of F with an index that is no vertex's.
+void require_faces(const Array3i& F, Eigen::Index vertices);
+
 /// Replaces all that a mesh holds for each vertex by the rows that the indices name. Labels and scalars must
 /// be those of vertices.
 void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows);

@@ -13,6 +13,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 namespace {
@@ -187,6 +188,10 @@ bool same_array(const Array& a, const Array& b) {
 
 }  // namespace
 
+void require_faces(const Array3i& F, Eigen::Index vertices) {
+    require_indices("F", F, vertices);
+}
+
 void validate(const MeshData& data) {
     validate(data, MeshData{});
 }
@@ -199,7 +204,7 @@ void validate(const MeshData& data, const MeshData& valid) {
     const bool same_V = same_array(data.V, valid.V);
     const bool same_count = data.V.rows() == valid.V.rows();
     if (!same_V) require_finite_positions(data.V);
-    if (!same_count || !same_array(data.F, valid.F)) require_indices("F", data.F, data.V.rows());
+    if (!same_count || !same_array(data.F, valid.F)) require_faces(data.F, data.V.rows());
     if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
     if (!same_array(data.splats.scales, valid.splats.scales) ||
         !same_array(data.splats.rotations, valid.splats.rotations) ||

@@ -10,6 +10,7 @@
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/directions.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 
@@ -184,6 +185,7 @@ class Accumulator {
 }  // namespace
 
 Array3f vertex_normals(const Array3f& V, const Array3i& F) {
+    require_faces(F, V.rows());
     constexpr size_t grain = size_t(1) << 16;
     Array3f::Dense N(V.rows(), 3);
     parallel_chunks(size_t(N.size()), grain,
@@ -198,6 +200,7 @@ Array3f vertex_normals(const Array3f& V, const Array3i& F) {
 }
 
 Array3f face_normals(const Array3f& V, const Array3i& F) {
+    require_faces(F, V.rows());
     Array3f::Dense N(F.rows(), 3);
     parallel_for(size_t(N.rows()), size_t(1) << 14, [&](size_t f) {
         const auto corner = [&](int k) -> Vec3d {
@@ -213,6 +216,7 @@ Array3f face_normals(const Array3f& V, const Array3i& F) {
 Array3f smooth_normals(const MeshData& mesh) {
     const Array1i& source = mesh.source_vertex;
     if (source.empty()) return vertex_normals(mesh.V, mesh.F);
+    require_faces(mesh.F, source.rows());
     const auto count = size_t(mesh.V.rows());
     Array3f::Dense V = Array3f::Dense::Zero(source.maxCoeff() + 1, 3);
     for (size_t i = 0; i < count; ++i) V.row(source[Eigen::Index(i)]) = mesh.V.row(Eigen::Index(i));

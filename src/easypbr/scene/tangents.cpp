@@ -11,6 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr {
@@ -193,6 +194,7 @@ ArrayXf corner_tangents(const Array3f& V, const Array3f& N, const Array2f& UV, c
         throw ArgumentError(fmt::format(
             "tangents: expected a normal and a uv for each of {} vertices, got {} normals and {} uv",
             V.rows(), N.rows(), UV.rows()));
+    require_faces(F, V.rows());
     const std::vector<int32_t> first = weld(V, N, UV);
     const Fans fans(first, F);
     ArrayXf::Dense T(F.size(), 4);
