@@ -17,6 +17,7 @@
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/assimp/message_decoder.h"
 #include "easypbr/io/mesh/content_format.h"
+#include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <span>
 #include <thread>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "io/gltf_builder.h"
 #include "io/las_builder.h"
@@ -101,6 +103,22 @@ TEST(ContentFormat, OfWhatIsWrittenIsTold) {
         for_each_node(mesh, [&](const auto& data, const auto&) { vertices += data->V.rows(); });
         EXPECT_EQ(vertices, 3) << extension;
     }
+}
+
+TEST(ContentFormat, OfBytesInMemoryIsToldToo) {
+    const TemporaryFolder folder;
+    for (const std::string extension : {"ply", "obj", "glb", "npy", "npz"}) {
+        io::save_mesh(Mesh(triangle()), folder / ("a." + extension));
+        // One byte off, so that no reader may take the beginning for aligned.
+        const std::string text = " " + std::string(FileBytes(folder / ("a." + extension)).text());
+        const auto bytes = std::as_bytes(std::span(text)).subspan(1);
+        const Mesh mesh = io::load_scene(bytes, "memory").mesh;
+        Eigen::Index vertices = 0;
+        for_each_node(mesh, [&](const auto& data, const auto&) { vertices += data->V.rows(); });
+        EXPECT_EQ(vertices, 3) << extension;
+        EXPECT_EQ(io::load_scene(bytes, "memory", {.format = extension}).mesh.name(), mesh.name());
+    }
+    EXPECT_THROW(io::load_scene(std::span<const std::byte>(), "memory"), FormatError);
 }
 
 TEST(ContentFormat, MayBeGiven) {

@@ -13,6 +13,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::io::memory_limit_test {

@@ -11,6 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::cli {

@@ -1,8 +1,10 @@
 // Mesh files to values and back.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,10 +12,6 @@
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/mesh.h"
-
-namespace easypbr {
-class FileBytes;
-}
 
 namespace easypbr::io {
 
@@ -46,10 +44,11 @@ struct LoadOptions {
 /// has not.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// The same from bytes without a file, as from a pipe. The format is that of the options, else it is told
-/// from the content. `name` stands in messages; what the content names is looked for beside it. Throws
-/// FormatError, also when the format cannot be told or is one that assimp reads.
-LoadedScene load_scene(const FileBytes& bytes, const std::filesystem::path& name, const LoadOptions& options);
+/// The same from bytes in memory. The format is that of the options, else it is told from the content. `name`
+/// stands in messages; what the content names is looked for beside it. Throws FormatError, also when the
+/// format cannot be told or is one that assimp reads.
+LoadedScene load_scene(std::span<const std::byte> bytes, const std::filesystem::path& name,
+                       const LoadOptions& options = {});
 
 /// The mesh of load_scene().
 Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});

@@ -13,6 +13,7 @@
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/cloud_writers.h"
 #include "easypbr/io/mesh/content_format.h"
+#include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
@@ -78,11 +79,11 @@ bool is_gltf(const std::string& format) {
 }
 
 /// `format` is glTF's or that of one of the readers.
-LoadedScene decode(const FileBytes& bytes, const fs::path& path, const std::string& format,
-                   const LoadOptions& options) {
-    if (is_gltf(format)) return decode_gltf(bytes.bytes(), path, options.variant);
-    MeshData data = readers().at(format)(Source(bytes, path), options);
-    bytes.check();
+LoadedScene decode(const Source& source, const std::string& format, const LoadOptions& options) {
+    const fs::path& path = source.path;
+    if (is_gltf(format)) return decode_gltf(std::as_bytes(std::span(source.bytes)), path, options.variant);
+    MeshData data = readers().at(format)(source, options);
+    if (source.file) source.file->check();
     // Of a cloud these are the points that were kept.
     const bool lost = data.F.empty() && data.E.empty() && !data.source_vertex.empty();
     if (options.strict && lost)
@@ -188,7 +189,10 @@ uint64_t limit_of(const LoadOptions& options) {
 LoadedScene read_scene(const fs::path& path, const LoadOptions& options) {
     const std::string format = options.format.empty() ? extension_of(path) : options.format;
     if (is_gltf(format)) return load_gltf(path, options.variant);
-    if (readers().contains(format)) return decode(FileBytes(path), path, format, options);
+    if (readers().contains(format)) {
+        const FileBytes bytes(path);
+        return decode(Source(bytes, path), format, options);
+    }
     if (contains(assimp_extensions(), format)) return load_assimp(path);
     fail_extension(path, format, "read", readable_extensions());
 }
@@ -204,6 +208,17 @@ void show_unlit_exactly(Mesh& mesh) {
     for (Mesh child : mesh.children()) show_unlit_exactly(child);
 }
 
+LoadedScene load_content(const Source& source, const LoadOptions& options) {
+    const MemoryScope memory(source.path.string(), limit_of(options));
+    if (source.bytes.empty())
+        throw FormatError(fmt::format("{}: there is nothing to read", source.path.string()));
+    const std::string format = options.format.empty() ? format_of_content(source.bytes) : options.format;
+    if (!is_gltf(format) && !readers().contains(format)) fail_format(source.path, format);
+    LoadedScene scene = decode(source, format, options);
+    show_unlit_exactly(scene.mesh);
+    return scene;
+}
+
 }  // namespace
 
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
@@ -214,13 +229,12 @@ LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
 }
 
 LoadedScene load_scene(const FileBytes& bytes, const fs::path& name, const LoadOptions& options) {
-    const MemoryScope memory(name.string(), limit_of(options));
-    if (bytes.size() == 0) throw FormatError(fmt::format("{}: there is nothing to read", name.string()));
-    const std::string format = options.format.empty() ? format_of_content(bytes.text()) : options.format;
-    if (!is_gltf(format) && !readers().contains(format)) fail_format(name, format);
-    LoadedScene scene = decode(bytes, name, format, options);
-    show_unlit_exactly(scene.mesh);
-    return scene;
+    return load_content(Source(bytes, name), options);
+}
+
+LoadedScene load_scene(std::span<const std::byte> bytes, const fs::path& name, const LoadOptions& options) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return load_content(Source(text, name), options);
 }
 
 Mesh load_mesh(const fs::path& path, const LoadOptions& options) {
