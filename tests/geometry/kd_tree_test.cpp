@@ -74,6 +74,8 @@ TEST(KdTree, RefusesWhatHasNoAnswer) {
     EXPECT_THROW(tree.nearest(Array3f(Array3f::Dense{{nan, 0, 0}}), 1), ArgumentError);
     EXPECT_THROW(tree.within(query, nan), ArgumentError);
     EXPECT_THROW(tree.within(query, -1), ArgumentError);
+    EXPECT_EQ(refusal([&] { tree.within(query, std::numeric_limits<float>::infinity()); }),
+              "neighbours within a radius: expected a finite number >= 0, got inf");
     EXPECT_EQ(tree.nearest(Array3f(), 3).indices.rows(), 0) << "no query, no answer";
 }
 

@@ -41,8 +41,8 @@ class KdTree {
     /// Throws ArgumentError unless 1 <= k <= size() and the queries are finite.
     Nearest nearest(const Array3f& queries, int k) const;
 
-    /// Points at a distance of at most `radius`. Throws ArgumentError unless radius >= 0 and the queries are
-    /// finite.
+    /// Points at a distance of at most `radius`. Throws ArgumentError unless radius >= 0, and it and the
+    /// queries are finite.
     Within within(const Array3f& queries, float radius) const;
 
   private:

@@ -78,6 +78,8 @@ class Mesh {
     Vec3d offset() const;
     void set_offset(const Vec3d& offset);
     void set_N(Array3f N);
+    /// sRGB-encoded colours, n x 3 or n x 4 (alpha last), 0 to 1: codes of 8 bits must be divided by 255.
+    /// Numbers outside of it and NaN are not refused, and what they look like is undefined.
     void set_C(ArrayXf C);
     void set_UV(Array2f UV);
     void set_F(Array3i F);

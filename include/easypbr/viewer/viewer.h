@@ -92,9 +92,12 @@ class Viewer {
     /// ArgumentError (among others when the picture has more than 2^30 pixels), FileError (images that the
     /// settings name), ContextError.
     Image render(const app::PictureOptions& options = {});
-    /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing), one
-    /// image for each name: "depth", "normal", "albedo" and so on. Throws NameError with the nearest name,
-    /// and as render() does.
+    /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing), an
+    /// f32 image for each name: "albedo" (linear, alpha is 1 where there is something), "normal_world"
+    /// (unit), "depth" (along the viewing direction, in world units), "roughness", "metallic", "occlusion"
+    /// (the material's), "ambient_occlusion" (1: nothing occludes; needs ssao.enabled), "object_id" and
+    /// "element_id" (1 + the number of the object and of its face or point). All are 0 where there is
+    /// nothing. Throws NameError with the nearest name, and as render() does.
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);
     /// The scene as it is now and the camera of the next picture.

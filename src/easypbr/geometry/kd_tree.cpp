@@ -123,7 +123,7 @@ KdTree::Nearest KdTree::nearest(const Array3f& queries, int k) const {
 KdTree::Within KdTree::within(const Array3f& queries, float radius) const {
     if (!(radius >= 0) || !std::isfinite(radius))
         throw ArgumentError(
-            fmt::format("neighbours within a radius: expected a number >= 0, got {}", radius));
+            fmt::format("neighbours within a radius: expected a finite number >= 0, got {}", radius));
     require_finite("neighbours within a radius", queries);
     using Found = std::vector<std::pair<float, int32_t>>;
     const auto count = size_t(queries.rows());
