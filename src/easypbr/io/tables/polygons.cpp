@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/tables/ear_clipping.h"
 #include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::io {
@@ -35,6 +36,14 @@ void write_fan(const int32_t* polygon, size_t size, size_t start, int32_t* out) 
         *out++ = polygon[(start + k) % size];
         *out++ = polygon[(start + k + 1) % size];
     }
+}
+
+/// Quads are cut along a diagonal, larger polygons into a fan where that is good, else by their ears.
+void write_triangles(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out) {
+    if (size > 4 && size <= most_clipped_corners && !is_fan_good(V, polygon, size))
+        EarClipper(V, polygon, size).write(out);
+    else
+        write_fan(polygon, size, fan_start(V, polygon, size), out);
 }
 
 size_t triangles_of(size_t corners) {
@@ -106,7 +115,7 @@ void triangulate(Polygons&& polygons, MeshData& mesh) {
         const size_t size = polygons.size_of(i);
         if (size < 3) return;
         const int32_t* polygon = polygons.values.data() + polygons.begin_of(i);
-        write_fan(polygon, size, fan_start(mesh.V, polygon, size), F.data() + size_t(first[i]) * 3);
+        write_triangles(mesh.V, polygon, size, F.data() + size_t(first[i]) * 3);
         std::fill(source_face.data() + first[i], source_face.data() + first[i + 1], int32_t(i));
     });
     mesh.F = std::move(F);

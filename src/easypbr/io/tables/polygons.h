@@ -34,9 +34,10 @@ void check_indices(const Source& source, std::span<const int32_t> indices, size_
 /// Throws FormatError, naming the first one, unless all positions are finite.
 void check_positions(const Source& source, const Array3f::Dense& V);
 
-/// Fills F and source_face of a mesh whose V is set. A polygon of n corners gives n - 2 triangles, as a fan;
-/// a concave quad is cut along its other diagonal where only that one lies inside. Polygons with less than
-/// three corners give none.
+/// Fills F and source_face of a mesh whose V is set. A polygon of n corners gives n - 2 triangles: a fan
+/// where all of its triangles lie inside, else a concave quad is cut along its other diagonal where only that
+/// one lies inside, and the ears of larger polygons are cut off, up to most_clipped_corners. Polygons with
+/// less than three corners give none.
 void triangulate(Polygons&& polygons, MeshData& mesh);
 
 /// Triangles of strips with indices in the order of the winding; -1 starts a new strip, degenerate triangles
