@@ -95,9 +95,74 @@ TEST(GltfAnimation, MorphsBySplines) {
         {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", "CUBICSPLINE"}}}},
          {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
     LoadedScene scene = load(file);
+    EXPECT_EQ(scene.mesh.children()[0].V(), (Array3f::Dense{{0, 0, 0.25}, {1, 0, 0.25}, {0, 1, 0.25}}));
     scene.animations.apply(0, 0.5);
     const Array3f::Dense expected{{0, 0, 0.5}, {3, 0, 0.5}, {0, 1, 0.5}};
     EXPECT_LT((scene.mesh.children()[0].V() - expected).cwiseAbs().maxCoeff(), 1e-6f);
+}
+
+/// The triangle with one morph target, which lifts it by 1, of weight 1/2.
+GltfBuilder lifted() {
+    GltfBuilder file;
+    file.triangle();
+    const size_t target = file.floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    file.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", target}}};
+    file.json["meshes"][0]["weights"] = {0.5};
+    return file;
+}
+
+float height_of(const Mesh& mesh) {
+    EXPECT_EQ(mesh.V().col(2).minCoeff(), mesh.V().col(2).maxCoeff());
+    return mesh.V()(0, 2);
+}
+
+// glTF 2.0, section 3.7.2.2: the weights of a mesh, or in their place those of its node, are the state
+// without an animation.
+TEST(GltfAnimation, WeightsOfTheFileAreThoseAtRest) {
+    GltfBuilder file = lifted();
+    EXPECT_TRUE(load(file).animations.empty());
+    EXPECT_EQ(height_of(load(file).mesh.children()[0]), 0.5f);
+    file.json["nodes"] = {{{"mesh", 0}, {"weights", {0.25}}}, {{"mesh", 0}}, {{"mesh", 0}, {"weights", {0}}}};
+    file.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
+    const LoadedScene scene = load(file);
+    EXPECT_EQ(height_of(scene.mesh.children()[0]), 0.25f);
+    EXPECT_EQ(height_of(scene.mesh.children()[1]), 0.5f);
+    EXPECT_EQ(height_of(scene.mesh.children()[2]), 0.0f);
+}
+
+TEST(GltfAnimation, WhatAnAnimationLeavesAloneKeepsItsWeights) {
+    GltfBuilder file = lifted();
+    const size_t input = file.floats({0, 2}, 1), output = file.floats({0, 0, 0, 6, 0, 0}, 3);
+    file.json["animations"] = {
+        {{"samplers", {{{"input", input}, {"output", output}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    LoadedScene scene = load(file);
+    EXPECT_EQ(height_of(scene.mesh.children()[0]), 0.5f);
+    for (const double seconds : {0.0, 1.0}) {
+        scene.animations.apply(0, seconds);
+        EXPECT_EQ(height_of(scene.mesh.children()[0]), 0.5f) << "once, not again";
+    }
+}
+
+// Section 3.7.3.3: a skinned mesh ignores its node's transform. One joint at y = 5 without an inverse bind
+// matrix; the node at x = 100.
+TEST(GltfAnimation, SkinsFollowTheirJointsWithoutAnAnimation) {
+    GltfBuilder file;
+    nlohmann::json& attributes = file.triangle()["attributes"];
+    attributes["JOINTS_0"] = file.accessor(std::vector<uint8_t>(12, 0), 5121, "VEC4", 3);
+    attributes["WEIGHTS_0"] = file.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4);
+    file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {100, 0, 0}}},
+                          {{"translation", {0, 5, 0}}}};
+    file.json["scenes"] = {{{"nodes", {0, 1}}}};
+    file.json["skins"] = {{{"joints", {1}}}};
+    const LoadedScene scene = load(file);
+    EXPECT_TRUE(scene.animations.empty());
+    const Mesh mesh = scene.mesh.children()[0];
+    EXPECT_EQ(mesh.T_world_mesh().translation(), Vec3d(100, 0, 0));
+    // In the world (0, 5, 0), (1, 5, 0) and (0, 6, 0). 100 is exact in float; so is what is taken from it.
+    EXPECT_EQ(mesh.V(), (Array3f::Dense{{-100, 5, 0}, {-99, 5, 0}, {-100, 6, 0}}));
+    file.json["skins"] = {{{"joints", {7}}}};
+    EXPECT_NE(error_of(file).find("nodes[7]"), std::string::npos) << error_of(file);
 }
 
 TEST(GltfAnimation, SaysWhatIsWrong) {

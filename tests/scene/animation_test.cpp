@@ -108,6 +108,50 @@ TEST(Animations, TheMeshsOwnNodeDoesNotMoveItsSkin) {
               1e-6);
 }
 
+TEST(Animations, AtRestSkinsFollowTheirJoints) {
+    Mesh mesh = triangle();
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].translation = Vec3d(7, 0, 0);
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(7, 0, 0)));
+    rig.nodes[1].translation = Vec3d(0, 0, 3);
+    rig.animations.clear();
+    Animations animations(std::move(rig));
+    animations.put_at_rest();
+    animations.put_at_rest();
+    // The joints are 3 above where the mesh was bound to them, in the world; its own node adds nothing.
+    EXPECT_EQ(mesh.V(), (Array3f::Dense{{-7, 0, 3}, {-6, 0, 3}, {-7, 1, 3}}));
+}
+
+TEST(Animations, AtRestNothingElseIsTouched) {
+    Mesh mesh = triangle();
+    AnimationRig rig;
+    rig.nodes.resize(1);
+    rig.nodes[0].mesh = mesh;
+    rig.nodes[0].deformation.V = mesh.V();
+    rig.nodes[0].deformation.targets_V = {Array3f::Dense{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}}};
+    rig.nodes[0].deformation.targets_N.resize(1);
+    rig.nodes[0].weights = {0};
+    const float* data = mesh.V().data();
+    Animations still(rig);
+    still.put_at_rest();
+    EXPECT_EQ(mesh.V().data(), data) << "the same array";
+    rig.nodes[0].weights = {0.5f};
+    Animations morphed(rig);
+    morphed.put_at_rest();
+    EXPECT_EQ(mesh.V()(0, 2), 0.5f);
+}
+
+// What is scaled to nothing cannot be moved back to where the joints are.
+TEST(Animations, ASkinOfANodeWithoutSizeStaysFinite) {
+    Mesh mesh = triangle();
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].scale.setZero();
+    Animations animations(std::move(rig));
+    animations.put_at_rest();
+    animations.apply(0, 0.5);
+    EXPECT_TRUE(mesh.V().allFinite());
+}
+
 TEST(Animations, MorphTargetsAddUp) {
     Mesh mesh = triangle();
     AnimationRig rig;

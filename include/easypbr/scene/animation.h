@@ -129,6 +129,10 @@ class Animations {
     /// unknown index, ArgumentError for a time that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
+    /// Puts the vertices and normals where they are without an animation: by the weights at rest, and where
+    /// the joints are at rest. Meshes without joints whose weights at rest are 0 keep their arrays.
+    void put_at_rest();
+
     /// The lights that the animations of the file move, change or hide, at a time of one of them, by their
     /// names in io::LoadedScene::lights, in world space. A hidden one has no intensity. Throws as apply().
     std::map<std::string, Light> lights(size_t index, double time_s, bool loop = true) const;
@@ -143,6 +147,7 @@ class Animations {
 
   private:
     struct Pose;
+    std::vector<Pose> pose_at_rest() const;
     std::vector<Pose> pose(const Animation& animation, double time_s) const;
     /// The poses at a time, brought into the animation's duration with `loop`.
     std::vector<Pose> pose_at(size_t index, double time_s, bool loop) const;

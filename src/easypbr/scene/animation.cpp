@@ -110,7 +110,8 @@ void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
         good = fits(d.targets_V[k]) && fits(d.targets_N[k]);
     if (!good) throw ArgumentError("animation rig: joints, weights or morph targets do not fit the vertices");
     if (!has_skin || d.joints.empty()) return;
-    if (!(d.joints.minCoeff() >= 0) || !(d.joints.maxCoeff() < float(joints)))
+    // NaN is neither.
+    if (!(d.joints.array() >= 0 && d.joints.array() < float(joints)).all())
         throw ArgumentError(fmt::format("animation rig: vertices follow joints {} to {}, but the skin has {}",
                                         d.joints.minCoeff(), d.joints.maxCoeff(), joints));
 }
@@ -250,11 +251,16 @@ double Animations::duration_s(size_t index) const {
     return rig_.animations[index].duration_s;
 }
 
-std::vector<Animations::Pose> Animations::pose(const Animation& animation, double time_s) const {
+std::vector<Animations::Pose> Animations::pose_at_rest() const {
     std::vector<Pose> poses;
     for (const AnimationNode& node : rig_.nodes)
         poses.push_back(
             {node.translation, node.scale, node.rotation, node.weights, node.visible, node.matrix});
+    return poses;
+}
+
+std::vector<Animations::Pose> Animations::pose(const Animation& animation, double time_s) const {
+    std::vector<Pose> poses = pose_at_rest();
     for (const AnimationChannel& channel : animation.channels) {
         if (!is_of_node(channel)) continue;
         Pose& pose = poses[size_t(channel.node)];
@@ -383,6 +389,17 @@ void Animations::apply(size_t index, double time_s, bool loop) {
             deform(node, T_world_nodes[i], poses[i].weights, T_world_nodes);
 }
 
+void Animations::put_at_rest() {
+    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(pose_at_rest());
+    for (const size_t i : order_) {
+        AnimationNode& node = rig_.nodes[i];
+        const bool follows = node.skin >= 0 && !node.deformation.joints.empty();
+        const bool morphs = !node.deformation.targets_V.empty() &&
+                            std::ranges::any_of(node.weights, [](float weight) { return weight != 0; });
+        if (node.mesh && (follows || morphs)) deform(node, T_world_nodes[i], node.weights, T_world_nodes);
+    }
+}
+
 void Animations::put_materials(const Animation& animation, double time_s) {
     auto parameters = parameters_at(rig_.materials, AnimatedProperty::material, animation, time_s);
     for (size_t i = 0; i < parameters.size(); ++i) {
@@ -402,7 +419,9 @@ void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_node
     const Deformation& from = node.deformation;
     Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N)};
     add_targets(from, weights, out);
-    if (node.skin >= 0 && !from.joints.empty()) {
+    // What is scaled to nothing is nowhere.
+    const bool has_place = std::abs(T_world_node.linear().determinant()) >= 1e-30;
+    if (node.skin >= 0 && !from.joints.empty() && has_place) {
         // The joints say where the vertices are in the world; the mesh is drawn with its node's pose.
         const Skin& skin = rig_.skins[size_t(node.skin)];
         const Eigen::Affine3d T_node_world = T_world_node.inverse();

@@ -199,6 +199,15 @@ void set_visibility_at_rest(const GltfDocument& document, AnimationRig& rig) {
         }
 }
 
+/// Whether nodes may have other vertices at rest than their meshes: by skins or weights of morph targets.
+bool deforms_at_rest(const GltfDocument& document) {
+    if (document.count("skins") > 0) return true;
+    for (const char* array : {"meshes", "nodes"})
+        for (size_t i = 0; i < document.count(array); ++i)
+            if (member(document.item(array, i), "weights")) return true;
+    return false;
+}
+
 }  // namespace
 
 AnimationNode read_gltf_pose(const GltfDocument& document, size_t index) {
@@ -222,7 +231,7 @@ AnimationNode read_gltf_pose(const GltfDocument& document, size_t index) {
 AnimationRig read_gltf_rig(GltfDocument& document, GltfMaterialPointers& pointers) {
     AnimationRig rig;
     const size_t animations = document.count("animations");
-    if (animations == 0) return rig;
+    if (animations == 0 && !deforms_at_rest(document)) return rig;
     for (size_t i = 0; i < document.count("nodes"); ++i) {
         rig.nodes.push_back(read_gltf_pose(document, i));
         if (const auto skin = document.optional_integer(document.item("nodes", i), "skin")) {
@@ -234,6 +243,7 @@ AnimationRig read_gltf_rig(GltfDocument& document, GltfMaterialPointers& pointer
         for (const size_t child : document.integers(document.item("nodes", i), "children"))
             if (child < rig.nodes.size()) rig.nodes[child].parent = int(i);
     for (size_t i = 0; i < document.count("skins"); ++i) rig.skins.push_back(read_skin(document, i));
+    if (animations == 0) return rig;
     for (size_t i = 0; i < animations; ++i)
         rig.animations.push_back(
             AnimationReader(document, pointers, document.item("animations", i), i).read());

@@ -17,9 +17,9 @@ inline constexpr const char* khr_node_visibility = "KHR_node_visibility";
 AnimationNode read_gltf_pose(const GltfDocument& document, size_t index);
 
 /// All nodes with parents and skins, the skins, the animations, the materials that they change, which
-/// `pointers` finds, and the lights and cameras, without users. Channels whose target is not known are left
-/// out. Throws FormatError for keys that do not rise or do not fit their values, and indices out of
-/// range.
+/// `pointers` finds, and the lights and cameras, without users. Without animations nodes and skins alone, and
+/// without skins and weights of morph targets nothing. Channels whose target is not known are left out.
+/// Throws FormatError for keys that do not rise or do not fit their values, and indices out of range.
 AnimationRig read_gltf_rig(GltfDocument& document, GltfMaterialPointers& pointers);
 
 }  // namespace easypbr::io

@@ -83,7 +83,11 @@ class SceneReader {
         if (root.children.empty()) document_.fail("there is no mesh in its scene");
         out_.mesh = Mesh(std::move(root));
         out_.variants = variants_.names();
-        if (!rig_.animations.empty()) out_.animations = Animations(std::move(rig_));
+        if (rig_.nodes.empty()) return std::move(out_);
+        const bool is_animated = !rig_.animations.empty();
+        Animations animations(std::move(rig_));
+        animations.put_at_rest();
+        if (is_animated) out_.animations = std::move(animations);
         return std::move(out_);
     }
 
@@ -163,7 +167,7 @@ class SceneReader {
                 data.children.push_back(*below);
         if (!mesh && data.children.empty()) return std::nullopt;
         const Mesh node(std::move(data));
-        if (!rig_.animations.empty()) animate(index, json, node, copies ? std::nullopt : mesh);
+        if (!rig_.nodes.empty()) animate(index, json, node, copies ? std::nullopt : mesh);
         if (!rig_.animations.empty() && copies)
             for (const Mesh& copy : node.children()) animate_materials(*mesh, copy);
         return node;
@@ -194,7 +198,7 @@ class SceneReader {
         return out;
     }
 
-    /// Tells the animations which mesh is the node's.
+    /// Tells the animations, and the rest pose, which mesh is the node's.
     void animate(size_t index, const Json& json, const Mesh& mesh, std::optional<size_t> mesh_index) {
         AnimationNode& node = rig_.nodes[index];
         node.mesh = mesh;
