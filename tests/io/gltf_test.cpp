@@ -103,6 +103,25 @@ TEST(Gltf, LinesAndPointsAreKept) {
     }
 }
 
+TEST(Gltf, PointsWithIndicesAreThoseOfTheIndices) {
+    GltfBuilder builder;
+    const size_t position = builder.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, 3);
+    const size_t heat = builder.floats({5, 6, 7, 8}, 1);
+    const size_t indices = builder.accessor(std::vector<uint16_t>{3, 1, 3}, 5123, "SCALAR", 3);
+    const nlohmann::json some = {
+        {"attributes", {{"POSITION", position}, {"_heat", heat}}}, {"indices", indices}, {"mode", 0}};
+    nlohmann::json all = some;
+    all.erase("indices");
+    builder.json["meshes"] = {{{"primitives", {some}}}};
+    const MeshData mesh = node(decode(builder));
+    EXPECT_EQ(mesh.V, (Array3f::Dense{{1, 0, 0}, {1, 1, 0}})) << "each once, in the order of the vertices";
+    EXPECT_EQ(mesh.scalars.at(0).values, (Array1f::Dense{{6}, {8}}));
+    for (const auto& primitives : {nlohmann::json{all, some}, nlohmann::json{some, all}}) {
+        builder.json["meshes"] = {{{"primitives", primitives}}};
+        EXPECT_EQ(node(decode(builder)).V.rows(), 4) << "all and some are all";
+    }
+}
+
 TEST(Gltf, ReadsInterleavedQuantisedAndSparseData) {
     GltfBuilder builder;
     // Rows of 12 bytes: three shorts of position, padding, a normalised byte normal, padding.

@@ -17,6 +17,7 @@
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -28,11 +29,13 @@ enum class Mode : size_t { points, lines, line_loop, line_strip, triangles, tria
 
 /// Vertices that primitives with the same accessors share. Absent attributes have no rows.
 struct VertexBlock {
-    Eigen::Index first = 0;
+    Eigen::Index first = 0, row_count = 0;
     ArrayXf::Dense V, N, UV, C, joints, weights;
     std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
     GltfValues values;                                 ///< without rows where there are none
     std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
+    std::vector<char> points;  ///< whether a primitive of points has the vertex; empty: all are drawn
+    bool is_whole = false;     ///< a primitive without indices has all vertices
 };
 
 void encode_colors(ArrayXf::Dense& C) {
@@ -117,6 +120,7 @@ class MeshBuilder {
                 Array2i(Eigen::Map<const Array2i::Dense>(edges_.data(), Eigen::Index(edges_.size() / 2), 2));
         GltfMesh mesh{std::move(out_), {}, {}, std::move(sources_)};
         read_deformation(json, mesh);
+        leave_out_unused_points(mesh);
         return mesh;
     }
 
@@ -198,7 +202,8 @@ class MeshBuilder {
         normalize_rows(block.N);
         flip_v(block.UV);
         encode_colors(block.C);
-        vertex_count_ += block.V.rows();
+        block.row_count = block.V.rows();
+        vertex_count_ += block.row_count;
         if (vertex_count_ > std::numeric_limits<int32_t>::max()) fail("has more than 2^31 vertices");
         return block;
     }
@@ -217,6 +222,36 @@ class MeshBuilder {
             add_part(triangle_corners(mode, count, index), material, block);
         else if (mode != Mode::points)
             add_lines(mode, count, index, int32_t(block.first));
+        else
+            add_points(accessor ? &indices : nullptr, block);
+    }
+
+    /// All points of a block, or those of its indices.
+    static void add_points(const std::vector<uint32_t>* indices, VertexBlock& block) {
+        if (!indices) block.is_whole = true;
+        if (block.is_whole) return block.points.clear();
+        block.points.resize(size_t(block.V.rows()), 0);
+        for (const uint32_t index : *indices) block.points[index] = 1;
+    }
+
+    /// Of a mesh of points alone those that its primitives have; beside faces and lines none are drawn.
+    void leave_out_unused_points(GltfMesh& mesh) {
+        const auto has_some = [](const VertexBlock& block) { return !block.points.empty(); };
+        if (!faces_.empty() || !edges_.empty() || std::ranges::none_of(blocks_, has_some)) return;
+        std::vector<int32_t> rows;
+        for (const VertexBlock& block : blocks_)
+            for (Eigen::Index i = 0; i < block.row_count; ++i)
+                if (block.points.empty() || block.points[size_t(i)]) rows.push_back(int32_t(block.first + i));
+        if (rows.empty()) fail("has points, but none is in its indices");
+        if (rows.size() == size_t(vertex_count_)) return;
+        choose_vertex_rows(mesh.data, rows);
+        Deformation& deformation = mesh.deformation;
+        deformation.V = rows_of(deformation.V, rows);
+        deformation.N = rows_of(deformation.N, rows);
+        deformation.joints = rows_of(deformation.joints, rows);
+        deformation.weights = rows_of(deformation.weights, rows);
+        for (Array3f& target : deformation.targets_V) target = rows_of(target, rows);
+        for (Array3f& target : deformation.targets_N) target = rows_of(target, rows);
     }
 
     void add_part(const std::vector<int32_t>& corners, std::optional<size_t> material, VertexBlock& block) {
