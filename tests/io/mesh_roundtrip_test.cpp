@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cstring>
 #include <random>
 #include <string>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "file_limit.h"
@@ -49,6 +51,13 @@ MeshData random_mesh(unsigned seed, int n) {
     mesh.F = Array3i::Dense::NullaryExpr(2 * n, 3, [&] { return int32_t(random() % unsigned(n)); });
     mesh.E = Array2i::Dense::NullaryExpr(n, 2, [&] { return int32_t(random() % unsigned(n)); });
     return mesh;
+}
+
+/// An image of one colour.
+std::shared_ptr<const Image> flat(uint8_t value) {
+    auto image = std::make_shared<Image>(2, 2, 3, PixelType::u8);
+    std::ranges::fill(image->pixels<uint8_t>(), value);
+    return image;
 }
 
 }  // namespace
@@ -139,6 +148,69 @@ TEST(MeshFiles, ObjKeepsMaterialsAndParts) {
     ASSERT_EQ(back->parts.size(), 2u);
     EXPECT_EQ(back->parts[1].first_face, 5);
     EXPECT_TRUE(same_bits(mesh.F, back->F));
+}
+
+TEST(MeshFiles, ObjWritesImagesThatNoFileHolds) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    Material red, other;
+    red.name = "red";
+    red.base_color_texture.image = flat(10);
+    red.emissive_texture.image = red.base_color_texture.image;
+    red.roughness_texture.image = flat(20);
+    red.roughness_texture.channel = 1;
+    other.name = "other";
+    other.base_color_texture.image = flat(30);
+    // A file that is there keeps its name, and its content.
+    io::save_image(*flat(40), folder / "my_m_normal.png");
+    other.normal_texture.image = flat(40);
+    other.normal_texture.path = (folder / "my_m_normal.png").string();
+    red.normal_texture.image = flat(50);
+    mesh.materials = {red, other};
+    mesh.parts = {{"a", 0, 5, 0}, {"b", 5, 15, 1}};
+    Mesh(mesh).save(folder / "my m.obj");
+    // OBJ, MTL, the normal map that was there, and four images: one of them is used twice.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 7);
+    const auto back = Mesh(folder / "my m.obj").snapshot();
+    ASSERT_EQ(back->materials.size(), 2u);
+    const auto value_of = [](const Texture& texture) {
+        return texture ? int(texture.image->at<uint8_t>(1, 1)[0]) : -1;
+    };
+    EXPECT_EQ(value_of(back->materials[0].base_color_texture), 10);
+    EXPECT_EQ(value_of(back->materials[0].emissive_texture), 10);
+    EXPECT_EQ(value_of(back->materials[0].roughness_texture), 20);
+    EXPECT_EQ(back->materials[0].roughness_texture.channel, 1);
+    EXPECT_EQ(value_of(back->materials[0].normal_texture), 50);
+    EXPECT_EQ(value_of(back->materials[1].base_color_texture), 30);
+    EXPECT_EQ(value_of(back->materials[1].normal_texture), 40);
+    EXPECT_TRUE(fs::exists(folder / "my_m_base_color.png"));
+}
+
+TEST(MeshFiles, ObjImagesAppearWithItOrNotAtAll) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(7, 300);
+    mesh.materials.resize(1);
+    mesh.materials[0].base_color_texture.image = flat(1);
+    {
+        // There is room for image and materials, not for the geometry.
+        const FileLimit full(1000);
+        EXPECT_THROW(Mesh(mesh).save(folder / "m.obj"), FileError);
+    }
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(MeshFiles, PlySaysWhichTexturesItLeavesOut) {
+    const TemporaryFolder folder;
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    MeshData mesh = random_mesh(3, 10);
+    mesh.materials.resize(1);
+    Mesh(mesh).save(folder / "m.ply");
+    EXPECT_EQ(warnings, "");
+    mesh.materials[0].base_color_texture.image = flat(1);
+    Mesh(mesh).save(folder / "m.ply");
+    set_log_sink({});
+    EXPECT_NE(warnings.find("no place for textures: left out"), std::string::npos) << warnings;
 }
 
 TEST(MeshFiles, PlyRefersToItsTexture) {

@@ -10,6 +10,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/cloud_writers.h"
 #include "easypbr/io/mesh/content_format.h"
@@ -135,10 +136,21 @@ std::vector<std::string> labels_and_scalars(const MeshData& mesh, bool of_faces_
     return names;
 }
 
+/// PLY names the file of one texture: the base colour of a mesh with one material.
+std::vector<std::string> textures_beside_ply(const MeshData& mesh) {
+    const bool is_left_out = std::ranges::any_of(mesh.materials, [&](Material material) {
+        if (mesh.materials.size() == 1 && !material.base_color_texture.path.empty())
+            material.base_color_texture = {};
+        return material.has_textures();
+    });
+    return is_left_out ? std::vector<std::string>{"textures"} : std::vector<std::string>{};
+}
+
 /// What of a mesh has no place in a format, beside faces and splats: names for a message.
 std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension) {
     if (extension == "glb") return left_out_of_gltf(mesh);
-    if (extension == "ply" || extension == "npz") return {};
+    if (extension == "ply") return textures_beside_ply(mesh);
+    if (extension == "npz") return {};
     if (extension != "obj" && extension != "spz") return labels_and_scalars(mesh, true);
     std::vector<std::string> names;
     if (extension == "spz" && !mesh.N.empty()) names.emplace_back("normals");
@@ -175,6 +187,9 @@ void save_obj(const Mesh& mesh, const fs::path& path) {
     warn_of_left_out(flat, path, "obj");
     const ObjText text = encode_obj(flat, library.filename().string(), fs::absolute(path).parent_path());
     FileSet files;
+    for (const auto& [name, image] : text.images)
+        files.add(path.parent_path() / name,
+                  encode_png(image->type() == PixelType::f32 ? to_u8(*image) : *image));
     if (!text.mtl.empty()) files.add(library, text.mtl);
     files.add(path, text.obj);
     files.commit();

@@ -1,8 +1,11 @@
 // Readers and writers of the mesh formats, over bytes; mesh_io.h chooses among them by extension.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 
+#include "easypbr/core/image.h"
 #include "easypbr/io/source/source.h"
 #include "easypbr/scene/mesh_data.h"
 
@@ -40,9 +43,11 @@ std::string encode_ply(const MeshData& mesh, const fs::path& folder);
 std::string encode_spz(const MeshData& mesh);
 
 /// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without
-/// materials.
+/// materials. Images that no file holds are to be written into `folder` beside it, as PNG, under the names
+/// that the MTL has for them.
 struct ObjText {
     std::string obj, mtl;
+    std::map<std::string, std::shared_ptr<const Image>> images = {};
 };
 ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::path& folder);
 

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
@@ -88,22 +91,35 @@ std::vector<std::string> material_names(const MeshData& mesh) {
 
 class MtlWriter {
   public:
-    explicit MtlWriter(const fs::path& folder) : folder_(folder) {}
+    /// `stem`: of the names of images that no file holds.
+    MtlWriter(const fs::path& folder, const std::string& stem) : folder_(folder), stem_(stem) {
+        for (char& c : stem_)
+            if (std::isspace(static_cast<unsigned char>(c)) || c == '#') c = '_';
+    }
+
+    /// A name that a texture's file has is no one else's.
+    void keep_names_of(const Material& m) {
+        for (const Texture* texture : {&m.base_color_texture, &m.emissive_texture, &m.roughness_texture,
+                                       &m.metallic_texture, &m.opacity_texture, &m.normal_texture})
+            taken_.insert(path_of(*texture));
+    }
 
     void append(const Material& m, const std::string& name) {
         line("newmtl {}\n", name);
         line("Kd {} {} {}\n", m.base_color.x(), m.base_color.y(), m.base_color.z());
         line("Ke {} {} {}\n", m.emissive.x(), m.emissive.y(), m.emissive.z());
         line("Pr {}\nPm {}\nd {}\nillum {}\n", m.roughness, m.metallic, m.opacity, m.unlit ? 0 : 2);
-        map("map_Kd", m.base_color_texture);
-        map("map_Ke", m.emissive_texture);
-        map("map_Pr", m.roughness_texture);
-        map("map_Pm", m.metallic_texture);
-        map("map_d", m.opacity_texture);
-        map("norm", m.normal_texture, m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
+        map("map_Kd", "base_color", m.base_color_texture);
+        map("map_Ke", "emissive", m.emissive_texture);
+        map("map_Pr", "roughness", m.roughness_texture);
+        map("map_Pm", "metallic", m.metallic_texture);
+        map("map_d", "opacity", m.opacity_texture);
+        map("norm", "normal", m.normal_texture,
+            m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
     }
 
     std::string take() { return std::move(text_); }
+    std::map<std::string, std::shared_ptr<const Image>> take_images() { return std::move(images_); }
 
   private:
     template <class... Values>
@@ -111,19 +127,36 @@ class MtlWriter {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
     }
 
-    /// A texture without a file (made in memory, embedded in a GLB) cannot be referred to.
-    void map(const char* keyword, const Texture& texture, const std::string& option = {}) {
-        if (texture.path.empty()) return;
+    void map(const char* keyword, const char* kind, const Texture& texture, const std::string& option = {}) {
+        if (texture.path.empty() && !texture.image) return;
         text_ += keyword + option;
         if (texture.channel > 0) line(" -imfchan {}", "rgbm"[texture.channel]);
         if (texture.wrap_u == Wrap::clamp) text_ += " -clamp on";
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0)) line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
-        line(" {}\n", path_from_folder(texture.path, folder_));
+        line(" {}\n", texture.path.empty() ? name_of(texture.image, kind) : path_of(texture));
+    }
+
+    std::string path_of(const Texture& texture) const {
+        return texture.path.empty() ? std::string() : path_from_folder(texture.path, folder_);
+    }
+
+    /// The name of an image made in memory or embedded in a GLB: the same for all uses.
+    const std::string& name_of(const std::shared_ptr<const Image>& image, const char* kind) {
+        std::string& name = names_[image];
+        for (int i = 1; name.empty(); ++i) {
+            std::string free = fmt::format("{}_{}{}.png", stem_, kind, i == 1 ? "" : fmt::format("_{}", i));
+            if (taken_.insert(free).second) name = std::move(free);
+        }
+        images_[name] = image;
+        return name;
     }
 
     fs::path folder_;
-    std::string text_;
+    std::string stem_, text_;
+    std::set<std::string> taken_;
+    std::map<std::shared_ptr<const Image>, std::string> names_;
+    std::map<std::string, std::shared_ptr<const Image>> images_;
 };
 
 }  // namespace
@@ -131,9 +164,11 @@ class MtlWriter {
 ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::path& folder) {
     ObjText text;
     const std::vector<std::string> names = material_names(mesh);
-    MtlWriter writer(folder);
+    MtlWriter writer(folder, fs::path(mtl_name).stem().string());
+    for (const Material& material : mesh.materials) writer.keep_names_of(material);
     for (size_t i = 0; i < names.size(); ++i) writer.append(mesh.materials[i], names[i]);
     text.mtl = writer.take();
+    text.images = writer.take_images();
     if (!names.empty()) text.obj = fmt::format("mtllib {}\n", mtl_name);
     append_vertices(mesh, text.obj);
     std::vector<MeshPart> parts = mesh.parts;
