@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -111,6 +112,60 @@ TEST(Xyz, LeavesOutRowsWithoutPositionAndColumnsOfWords) {
     EXPECT_EQ(scalar_named(mesh, "heat").values[0], 5);
     EXPECT_TRUE(std::isnan(scalar_named(mesh, "heat").values[1])) << "an empty cell has no value";
     EXPECT_EQ(mesh.source_vertex[1], 3);
+}
+
+TEST(Xyz, CommentsMayStandAnywhere) {
+    for (const std::string text :
+         {"1 2 3\n// between\n4 5 6\n", "1 2 3 # behind\n4 5 6 #behind\n", "1 2 3 // behind\n4 5 6\n",
+          "1,2,3 # behind, with a comma\n4,5,6\n", "x y z\n1 2 3\n4 5 6 # end\n"}) {
+        EXPECT_TRUE(warnings_of(text).empty()) << text;
+        const MeshData mesh = read(text);
+        ASSERT_EQ(mesh.V.rows(), 2) << text;
+        EXPECT_EQ(Vec3(mesh.V.row(1)), Vec3(4, 5, 6)) << text;
+        EXPECT_EQ(names_of(mesh), "") << text;
+    }
+}
+
+TEST(Xyz, QuotedCellsMayHoldDelimiters) {
+    const std::string text = "\"name, of it\",x,y,z,heat\n\"a, b\",1,2,3,4\n\"say \"\"c;\"\"\",4,5,6,\"7\"\n";
+    const MeshData mesh = read(text, "a.csv");
+    ASSERT_EQ(mesh.V.rows(), 2);
+    EXPECT_EQ(Vec3(mesh.V.row(1)), Vec3(4, 5, 6));
+    EXPECT_EQ(scalar_named(mesh, "heat").values[1], 7) << "a number in quotes";
+    const auto warnings = warnings_of(text, "a.csv");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("words are left out: name, of it"), std::string::npos) << warnings[0];
+}
+
+TEST(Xyz, TheLastCellMayBeEmpty) {
+    for (const std::string header : {"x,y,z,s\n", "x,y,z,s,\n"}) {
+        const MeshData mesh = read(header + "1,2,3,\n4,5,6,7\n", "a.csv");
+        ASSERT_EQ(mesh.V.rows(), 2) << header;
+        EXPECT_TRUE(std::isnan(scalar_named(mesh, "s").values[0]));
+        EXPECT_EQ(scalar_named(mesh, "s").values[1], 7);
+    }
+    const MeshData two = read("x,y,z,s,w\n1,2,3,,\n4,5,6,7,8\n", "a.csv");
+    EXPECT_TRUE(std::isnan(scalar_named(two, "w").values[0]));
+    EXPECT_EQ(scalar_named(two, "w").values[1], 8);
+    EXPECT_EQ(read("1,2,3,\n4,5,6,7\n", "a.csv").I[1], 7) << "without a header";
+    // A delimiter at the end of all rows separates nothing.
+    for (const std::string text : {"1,2,3,\n4,5,6,\n", "x,y,z\n1,2,3,\n4,5,6,\n", "x,y,z,\n1,2,3,\n4,5,6,\n",
+                                   "x,y,z,\n1,2,3\n4,5,6\n"}) {
+        EXPECT_EQ(read(text, "a.csv").V.rows(), 2) << text;
+        EXPECT_EQ(names_of(read(text, "a.csv")), "") << text;
+    }
+}
+
+TEST(Xyz, LabelsThatAreNoneAreCounted) {
+    const std::string text =
+        "x,y,z,label\n1,2,3,4.0\n1,2,3,4.5\n1,2,3,4294967296\n1,2,3,-2147483648\n"
+        "1,2,3,2147483647\n1,2,3,\n";
+    const MeshData mesh = read(text, "a.csv");
+    EXPECT_EQ(std::vector<int>(mesh.L.data(), mesh.L.data() + mesh.L.size()),
+              (std::vector<int>{4, -1, -1, INT32_MIN, INT32_MAX, -1}));
+    const auto warnings = warnings_of(text, "a.csv");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("2 values of 'label' are no integers"), std::string::npos) << warnings[0];
 }
 
 TEST(Xyz, PtsHasItsCount) {

@@ -6,8 +6,18 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 
 namespace easypbr::io {
+
+TextSource::TextSource(const Source& given) : source_(given.without_mark()) {
+    const std::string_view text = source_.bytes;
+    if (text.find('\n') != text.npos || text.find('\r') == text.npos) return;
+    charge_memory(text.size(), "its text");
+    copy_ = text;
+    std::ranges::replace(copy_, '\r', '\n');
+    source_ = Source(std::string_view(copy_), given.path);
+}
 
 void fail_at_byte(const Source& source, const char* place, std::string_view message) {
     throw FormatError(fmt::format("{}: byte {}: {}", source.path.string(), place - source.begin(), message));

@@ -23,6 +23,14 @@ struct Source {
     /// The bytes from a place on.
     Source from(size_t place) const { return {bytes.substr(place), path}; }
 
+    /// The same without a byte order mark of UTF-8, which some editors put before text.
+    Source without_mark() const {
+        constexpr std::string_view mark = "\xef\xbb\xbf";
+        Source text = *this;
+        if (bytes.starts_with(mark)) text.bytes.remove_prefix(mark.size());
+        return text;
+    }
+
     const char* begin() const { return bytes.data(); }
     const char* end() const { return bytes.data() + bytes.size(); }
 
@@ -30,6 +38,23 @@ struct Source {
     void release_until(const char* place) const {
         if (file) file->release_until(size_t(place - begin()));
     }
+};
+
+/// Text of which nothing is binary: without a byte order mark, and with line feeds in place of the carriage
+/// returns that alone end the lines of old Macintosh files.
+class TextSource {
+  public:
+    /// What is changed is a copy, else `given` is used and must live on. Throws FormatError when there is no
+    /// memory for a copy (core/memory_budget.h).
+    explicit TextSource(const Source& given);
+    TextSource(const TextSource&) = delete;
+    TextSource& operator=(const TextSource&) = delete;
+
+    const Source& source() const { return source_; }
+
+  private:
+    std::string copy_;
+    Source source_;
 };
 
 /// Throws FormatError "PATH: byte N: MESSAGE".

@@ -39,6 +39,19 @@ inline std::string_view read_word(const char*& p, const char* end) {
     return {first, size_t(p - first)};
 }
 
+/// Behind the text in quotes that begins at `p`, in which "" is a quote; `p` where there is none that ends in
+/// the line.
+inline const char* skip_quoted(const char* p, const char* end) {
+    if (p == end || *p != '"') return p;
+    const char* const stop = line_end(p, end);
+    for (const char* q = p + 1; q != stop; ++q) {
+        if (*q != '"') continue;
+        if (q + 1 == stop || q[1] != '"') return q + 1;
+        ++q;
+    }
+    return p;
+}
+
 /// The rest of the line without blanks around it; moves `p` to the line's end.
 inline std::string_view read_rest(const char*& p, const char* end) {
     p = skip_blanks(p, end);

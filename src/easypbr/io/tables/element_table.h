@@ -75,9 +75,15 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
 
 /// How rows of text are written: one per line, numbers between blanks.
 struct TextStyle {
-    char comment = 0;    ///< what follows it up to the line's end is ignored; 0: there are no comments
+    /// What follows it up to the line's end is ignored, and what follows "//"; 0: there are no comments.
+    char comment = 0;
     char delimiter = 0;  ///< between numbers, beside blanks (',' or ';'); nothing between two is NaN; 0: none
 };
+
+/// Whether a comment stands at `p`.
+inline bool begins_comment(const char* p, const char* end, const TextStyle& style) {
+    return style.comment && p != end && (*p == style.comment || (*p == '/' && p + 1 != end && p[1] == '/'));
+}
 
 /// A piece of a text.
 struct TextChunk {

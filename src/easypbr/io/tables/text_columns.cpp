@@ -19,11 +19,18 @@ bool is_number(std::string_view cell) {
 }
 
 /// Blanks, tabs, commas or semicolons, whatever the line has; commas may stand within what semicolons
-/// separate.
+/// separate. What stands in quotes or behind a comment separates nothing.
 char delimiter_in(std::string_view line) {
-    for (const char delimiter : {';', ','})
-        if (line.find(delimiter) != line.npos) return delimiter;
-    return 0;
+    char found = 0;
+    const char* const end = line.data() + line.size();
+    for (const char* p = line.data(); p != end;) {
+        if (*p == ';') return ';';
+        if (*p == ',') found = ',';
+        if (*p == '#' && p != line.data() && is_blank(p[-1])) break;
+        const char* behind = skip_quoted(p, end);
+        p = behind == p ? p + 1 : behind;
+    }
+    return found;
 }
 
 size_t parse_count(const Source& source, std::string_view cell) {
@@ -50,6 +57,8 @@ std::vector<std::string> header_names(std::string_view line) {
     std::vector<std::string> names;
     for (const std::string_view cell : split_cells(line.data(), line.data() + line.size(), style))
         names.push_back(without_unit(cell));
+    // A delimiter at the end separates nothing.
+    if (!names.empty() && names.back().empty()) names.pop_back();
     return std::ranges::any_of(names, is_known_field) ? names : std::vector<std::string>();
 }
 
@@ -139,24 +148,34 @@ class Guess {
 std::vector<std::string_view> split_cells(const char* p, const char* end, const TextStyle& style) {
     std::vector<std::string_view> cells;
     const char* stop = line_end(p, end);
-    while (p != stop) {
+    bool goes_on = p != stop;
+    while (goes_on) {
         p = skip_blanks(p, stop);
         const char* first = p;
-        while (p != stop && (style.delimiter ? *p != style.delimiter : !is_blank(*p))) ++p;
+        p = skip_quoted(p, stop);
+        while (p != stop && (style.delimiter ? *p != style.delimiter : !is_blank(*p))) {
+            const bool is_in_cell = style.delimiter ? p != first && is_blank(p[-1]) : p == first;
+            if (is_in_cell && begins_comment(p, stop, style))
+                stop = p;
+            else
+                ++p;
+        }
         const char* last = p;
         while (last != first && is_blank(last[-1])) --last;
         if (last - first > 1 && *first == '"' && last[-1] == '"') ++first, --last;
         if (first != last || style.delimiter) cells.emplace_back(first, size_t(last - first));
-        if (p != stop) ++p;
+        // What a delimiter ends is followed by a cell, if by an empty one.
+        goes_on = p != stop;
+        if (goes_on) ++p;
+        if (!style.delimiter) goes_on = p != stop;
     }
     return cells;
 }
 
 TextLayout find_text_layout(const Source& source) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     TextLayout layout;
     layout.style.comment = '#';
-    layout.body = source.begin() + (source.bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
+    layout.body = source.begin();
     while (layout.body != source.end()) {
         const char* p = layout.body;
         std::string_view line = read_rest(p, source.end());

@@ -22,7 +22,8 @@ struct TextLayout {
 /// A header is a line of words before the first row, perhaps behind '#' or "//".
 TextLayout find_text_layout(const Source& source);
 
-/// The cells of the line at `p` without blanks and quotes around them.
+/// The cells of the line at `p` without blanks and quotes around them, up to a comment behind them.
+/// Delimiters in quotes separate nothing; behind the last one is a cell, too.
 std::vector<std::string_view> split_cells(const char* p, const char* end, const TextStyle& style);
 
 /// Names for columns without a header, from sample rows: x y z, then, in any order that the numbers allow,

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/element_table.h"
@@ -26,18 +28,18 @@ struct ListPart {
 using ChunkLists = std::vector<std::vector<ListPart>>;
 
 /// The first character of a row at or after `p`, or null when only empty lines and comments are left.
-const char* next_row(const char* p, const char* end, char comment) {
+const char* next_row(const char* p, const char* end, const TextStyle& style) {
     while (p != end) {
         p = skip_blanks(p, end);
-        if (p != end && *p != '\n' && !(comment && *p == comment)) return p;
+        if (p != end && *p != '\n' && !begins_comment(p, end, style)) return p;
         p = next_line(p, end);
     }
     return nullptr;
 }
 
-size_t count_rows(const char* p, const char* end, char comment) {
+size_t count_rows(const char* p, const char* end, const TextStyle& style) {
     size_t rows = 0;
-    for (; (p = next_row(p, end, comment)); p = next_line(p, end)) ++rows;
+    for (; (p = next_row(p, end, style)); p = next_line(p, end)) ++rows;
     return rows;
 }
 
@@ -52,9 +54,13 @@ bool at_empty_cell(const char*& p, const char* end, const TextStyle& style, bool
 /// Passes over what stands in a column that nobody wants. False when nothing does.
 bool skip_word(const char*& p, const char* end, const TextStyle& style) {
     const char* first = p = skip_blanks(p, end);
+    if (style.delimiter) p = skip_quoted(p, end);
     while (p != end && *p != '\n' && (style.delimiter ? *p != style.delimiter : !is_blank(*p))) ++p;
     return p != first;
 }
+
+/// How many values of a property are no integers.
+using Misfits = std::map<std::string, size_t>;
 
 class ChunkReader {
   public:
@@ -64,9 +70,12 @@ class ChunkReader {
         for (const ElementPlan& plan : plans) lists_.emplace_back(plan.columns.size());
     }
 
+    /// Values of columns of integers that are none or do not fit.
+    const Misfits& misfits() const { return misfits_; }
+
     ChunkLists read() {
         size_t plan = 0, row = chunk_.first_row;
-        for (const char* p = chunk_.begin; (p = next_row(p, chunk_.end, style_.comment));
+        for (const char* p = chunk_.begin; (p = next_row(p, chunk_.end, style_));
              p = next_line(p, chunk_.end)) {
             while (plan < plans_.size() && row >= plans_[plan].element->count)
                 row -= plans_[plan++].element->count;
@@ -137,22 +146,29 @@ class ChunkReader {
 
     template <class Number>
     Number number(const char*& p, const Property& property) const {
+        p = skip_blanks(p, chunk_.end);
+        const bool is_quoted = style_.delimiter && p != chunk_.end && *p == '"';
+        if (is_quoted) ++p;
         Number value;
         if (!read_number(p, chunk_.end, value)) fail_missing(p, property);
+        if (is_quoted && p != chunk_.end && *p == '"') ++p;
         return value;
     }
 
-    /// An integer, perhaps written as a real number; -1 when it does not fit.
-    int32_t integer(const char*& p, const Property& property) const {
+    /// An integer, perhaps written as a real number; -1, which is counted, when it is none or does not fit.
+    int32_t integer(const char*& p, const Property& property) {
         p = skip_blanks(p, chunk_.end);
         const char* start = p;
         int32_t value = 0;
-        if (read_integer(p, chunk_.end, value) &&
+        if (read_integer(p, chunk_.end, value) && value != INT32_MAX && value != -INT32_MAX &&
             (p == chunk_.end || is_blank(*p) || *p == '\n' || *p == style_.delimiter))
             return value;
+        // What saturated, too.
         p = start;
         const double real = number<double>(p, property);
-        return real >= INT32_MIN && real <= INT32_MAX ? int32_t(real) : -1;
+        if (real >= INT32_MIN && real <= INT32_MAX && std::floor(real) == real) return int32_t(real);
+        ++misfits_[property.name];
+        return -1;
     }
 
     uint32_t bits(const char*& p, const Property& property) const {
@@ -177,6 +193,7 @@ class ChunkReader {
     const TextStyle style_;
     const std::vector<ElementPlan>& plans_;
     ChunkLists lists_;
+    Misfits misfits_;
 };
 
 /// Joins one column's lists of all chunks.
@@ -207,6 +224,15 @@ void join_lists(const Source& source, const std::vector<ChunkLists>& chunks, siz
     if (uniform) list.first.clear();
 }
 
+void warn_of_misfits(const Source& source, const std::vector<Misfits>& chunks) {
+    Misfits all;
+    for (const Misfits& misfits : chunks)
+        for (const auto& [name, count] : misfits) all[name] += count;
+    for (const auto& [name, count] : all)
+        log_warning(fmt::format("{}: {} values of '{}' are no integers of 32 bits and become -1",
+                                source.path.string(), count, name));
+}
+
 }  // namespace
 
 void check_text_rows(const Source& source, const char* body, const std::vector<Element>& elements) {
@@ -224,9 +250,8 @@ TextRows::TextRows(const Source& source, const char* body, TextStyle style) : bo
     const std::vector<size_t> starts = line_chunks({body, size_t(source.end() - body)}, chunk_bytes);
     for (size_t i = 0; i + 1 < starts.size(); ++i)
         chunks.push_back({body + starts[i], body + starts[i + 1], 0, 0});
-    parallel_for(chunks.size(), 1, [&](size_t i) {
-        chunks[i].row_count = count_rows(chunks[i].begin, chunks[i].end, style.comment);
-    });
+    parallel_for(chunks.size(), 1,
+                 [&](size_t i) { chunks[i].row_count = count_rows(chunks[i].begin, chunks[i].end, style); });
     for (size_t i = 1; i < chunks.size(); ++i)
         chunks[i].first_row = chunks[i - 1].first_row + chunks[i - 1].row_count;
 }
@@ -240,15 +265,19 @@ void read_text_elements(const Source& source, const TextRows& rows, std::vector<
                      fmt::format("{} rows expected, but the file ends after {}", expected, rows.count()));
 
     std::vector<ChunkLists> lists(chunks.size());
+    std::vector<Misfits> misfits(chunks.size());
     Progress progress(source, size_t(source.end() - rows.body));
     for (size_t first = 0; first < chunks.size(); first += chunk_slab) {
         parallel_for(std::min(chunk_slab, chunks.size() - first), 1, [&](size_t i) {
             const TextChunk& chunk = chunks[first + i];
-            lists[first + i] = ChunkReader(source, chunk, rows.style, plans).read();
+            ChunkReader reader(source, chunk, rows.style, plans);
+            lists[first + i] = reader.read();
+            misfits[first + i] = reader.misfits();
             progress.advance(size_t(chunk.end - chunk.begin));
         });
         source.release_until(chunks[first].begin);
     }
+    warn_of_misfits(source, misfits);
     for (size_t plan = 0; plan < plans.size(); ++plan) {
         for (size_t i = 0; i < plans[plan].columns.size(); ++i) {
             const Column& column = plans[plan].columns[i];
@@ -267,10 +296,15 @@ Vec3d position_in_row(const char* p, const char* end, const TextStyle& style, co
     for (size_t i = 0; i < element.properties.size() && !element.properties[i].count_type; ++i) {
         if (at_empty_cell(p, end, style, i == 0)) continue;
         const auto axis = std::find(properties.begin(), properties.end(), i);
-        if (axis == properties.end())
+        if (axis == properties.end()) {
             skip_word(p, end, style);
-        else
-            read_number(p, end, position[axis - properties.begin()]);
+            continue;
+        }
+        const char* const number = p;
+        const bool is_quoted = style.delimiter && p != end && *p == '"';
+        p += is_quoted;
+        read_number(p, end, position[axis - properties.begin()]);
+        if (is_quoted) p = skip_quoted(number, end);
     }
     return position;
 }
@@ -288,7 +322,7 @@ std::vector<const char*> sample_rows(const TextRows& rows, size_t first, size_t 
         size_t row = chunk.first_row;
         auto next = std::lower_bound(wanted.begin(), wanted.end(), row);
         for (const char* p = chunk.begin; next != wanted.end(); p = next_line(p, chunk.end), ++row) {
-            if (!(p = next_row(p, chunk.end, rows.style.comment))) return;
+            if (!(p = next_row(p, chunk.end, rows.style))) return;
             if (row == *next) starts[size_t(next++ - wanted.begin())] = p;
         }
     });

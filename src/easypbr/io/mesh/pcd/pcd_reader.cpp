@@ -200,8 +200,9 @@ bool is_depth_image(const PcdHeader& header, const MeshData& mesh) {
 
 }  // namespace
 
-MeshData read_pcd(const Source& source) {
-    if (source.bytes.empty()) fail(source, "the file is empty");
+MeshData read_pcd(const Source& given) {
+    if (given.bytes.empty()) fail(given, "the file is empty");
+    const Source source = given.without_mark();
     const PcdHeader header = parse_pcd_header(source);
     MeshData mesh = read_points(source, header);
     drop_points_without_position(source, mesh);

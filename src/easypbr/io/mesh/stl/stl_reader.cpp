@@ -43,7 +43,8 @@ bool starts_with_word(const char* p, const char* end, std::string_view word) {
 /// Binary files may begin with "solid" as well, so the size decides first.
 bool is_text_stl(const Source& source) {
     if (source.bytes.size() == header_bytes + facet_bytes * declared_facets(source)) return false;
-    return starts_with_word(source.begin(), source.end(), "solid");
+    const Source text = source.without_mark();
+    return starts_with_word(text.begin(), text.end(), "solid");
 }
 
 Corners read_binary(const Source& source) {
@@ -98,7 +99,9 @@ std::vector<float> read_facets(const Source& source, const char* p, const char* 
     return corners;
 }
 
-Corners read_text(const Source& source) {
+Corners read_text(const Source& given) {
+    const TextSource text(given);
+    const Source& source = text.source();
     const std::vector<size_t> starts = facet_chunks(source);
     std::vector<std::vector<float>> parts(starts.size() - 1);
     Progress progress(source, source.bytes.size());

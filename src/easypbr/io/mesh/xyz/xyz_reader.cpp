@@ -42,6 +42,18 @@ Samples samples_of(const Source& source, const TextRows& rows) {
     return samples;
 }
 
+/// Leaves out a last column without a name in which nothing stands: a delimiter at the end of each row
+/// separates nothing.
+void drop_empty_last(const TextLayout& layout, Samples& samples) {
+    const size_t count = samples.is_text.size();
+    const bool is_named = layout.names.size() >= count && count > 0;
+    const auto is_empty = [](const std::vector<double>& row) { return std::isnan(row.back()); };
+    if (count == 0 || is_named || samples.is_text.back() || !std::ranges::all_of(samples.rows, is_empty))
+        return;
+    samples.is_text.pop_back();
+    for (std::vector<double>& row : samples.rows) row.pop_back();
+}
+
 /// A column for each cell of the rows; those of words are skipped.
 Element describe(const Source& source, const TextLayout& layout, const Samples& samples, size_t count,
                  bool is_pts) {
@@ -68,16 +80,19 @@ Element describe(const Source& source, const TextLayout& layout, const Samples& 
 
 }  // namespace
 
-MeshData read_xyz(const Source& source, bool is_pts) {
-    if (source.bytes.empty()) fail(source, "the file is empty");
+MeshData read_xyz(const Source& given, bool is_pts) {
+    if (given.bytes.empty()) fail(given, "the file is empty");
+    const TextSource text(given);
+    const Source& source = text.source();
     const TextLayout layout = find_text_layout(source);
     const TextRows rows(source, layout.body, layout.style);
     const size_t count = layout.count.value_or(rows.count());
     if (count < rows.count())
         log_warning(fmt::format("{}: {} rows behind the {} points that the file says it has are left out",
                                 source.path.string(), rows.count() - count, count));
-    MeshData mesh =
-        read_text_cloud(source, rows, describe(source, layout, samples_of(source, rows), count, is_pts));
+    Samples samples = samples_of(source, rows);
+    drop_empty_last(layout, samples);
+    MeshData mesh = read_text_cloud(source, rows, describe(source, layout, samples, count, is_pts));
     drop_points_without_position(source, mesh);
     return mesh;
 }
