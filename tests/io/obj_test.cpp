@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -43,6 +44,15 @@ TEST(Obj, ReadsPolygonsNegativeIndicesContinuationsAndWindowsLineEnds) {
     EXPECT_EQ(read("v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n\r\n# end\r\nf 1 2 3\r\n").F, triangles({0, 1, 2}));
     EXPECT_EQ(read("  v 0 0 +1e0\n\tv 1 0 0\nv 0 1 0\ng group\no object\ns off\nvp 1\nf 1 2 3 # comment").F,
               triangles({0, 1, 2}));
+}
+
+TEST(Obj, CornersMayEndWithSlashes) {
+    const Array3i::Dense one = triangles({0, 1, 2});
+    EXPECT_EQ(read(square + "f 1/ 2/ 3/\n").F, one);
+    EXPECT_EQ(read(square + "f 1// 2// 3//").F, one);
+    EXPECT_EQ(read(square + "vt 0 0\nf 1/1/ 2/1/ \\\n3/1/ # end\n").UV.rows(), 4);
+    EXPECT_THROW(read(square + "f 1/// 2 3\n"), FormatError);
+    EXPECT_THROW(read(square + "f 1/x 2 3\n"), FormatError);
 }
 
 TEST(Obj, ReadsVertexColorsAndLines) {
@@ -158,6 +168,58 @@ TEST(Obj, ReadsMaps) {
     EXPECT_EQ(m.base_color_texture.image, m.normal_texture.image) << "an image is read once";
     EXPECT_TRUE(read_material("bump maps/a b.png\n", folder).normal_texture);
     EXPECT_FALSE(read_material("bump grey.png\n", folder).normal_texture) << "a height map is no normal map";
+}
+
+TEST(Obj, NamesMayBeginLikeNumbersStandInQuotesAndHaveComments) {
+    const TemporaryFolder folder;
+    for (const char* name : {"1.png", "a b.png", "c #1.png"})
+        io::save_image(Image(2, 2, 3, PixelType::u8), folder / name);
+    const auto file_of = [&](const std::string& line) {
+        return fs::path(read_material(line, folder).base_color_texture.path).filename().string();
+    };
+    EXPECT_EQ(file_of("map_Kd -s 2 2 1.png\n"), "1.png");
+    EXPECT_EQ(file_of("map_Kd -o 0.5 1.png\n"), "1.png");
+    EXPECT_EQ(file_of("map_Kd \"a b.png\"\n"), "a b.png");
+    EXPECT_EQ(file_of("map_Kd a b.png # of the wall\n"), "a b.png");
+    EXPECT_EQ(file_of("map_Kd \"a b.png\" # of the wall\n"), "a b.png");
+    EXPECT_EQ(file_of("map_Kd c #1.png\n"), "c #1.png") << "a name with a '#'";
+    const Material scaled = read_material("map_Kd -s 2 3 1.png\n", folder);
+    EXPECT_EQ(Vec3(scaled.base_color_texture.uv_transform * Vec3(1, 1, 1)), Vec3(2, 3, 1));
+}
+
+TEST(Obj, FindsMaterialsWhateverStandsAroundTheirNames) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl",
+               "newmtl \"red\"\nKd 1 0 0\nnewmtl blue # sky\nKd 0 0 1\n"
+               "newmtl Material #25\nKd 0 1 0\nnewmtl Material #26\nKd 0 1 1\n");
+    const auto color_of = [&](const std::string& name) {
+        return read("mtllib m.mtl # of this file\n" + square + "usemtl " + name + "\nf 1 2 3\n",
+                    folder / "test.obj")
+            .materials.at(0)
+            .base_color;
+    };
+    EXPECT_EQ(color_of("red"), Vec3(1, 0, 0));
+    EXPECT_EQ(color_of("\"red\""), Vec3(1, 0, 0));
+    EXPECT_EQ(color_of("red # of bricks"), Vec3(1, 0, 0));
+    EXPECT_EQ(color_of("blue"), Vec3(0, 0, 1));
+    EXPECT_EQ(color_of("Material #25"), Vec3(0, 1, 0)) << "no comment";
+    EXPECT_EQ(color_of("Material #26"), Vec3(0, 1, 1)) << "no comment";
+}
+
+// An opacity of 100/255 is neither there nor not; what a JPEG file makes of black and white is.
+TEST(Obj, OpacityMapsBlendUnlessTheyAreBlackAndWhite) {
+    const TemporaryFolder folder;
+    const auto mode_of = [&](std::initializer_list<uint8_t> texels, const std::string& lines = "") {
+        Image image(int(texels.size()), 1, 1, PixelType::u8);
+        std::copy(texels.begin(), texels.end(), image.pixels<uint8_t>().begin());
+        io::save_image(image, folder / "d.png");
+        return *read_material(lines + "map_d d.png\n", folder).alpha_mode;
+    };
+    EXPECT_EQ(mode_of({0, 255}), AlphaMode::mask);
+    EXPECT_EQ(mode_of({3, 251}), AlphaMode::mask);
+    EXPECT_EQ(mode_of({100, 100}), AlphaMode::blend);
+    EXPECT_EQ(mode_of({0, 255, 128}), AlphaMode::blend);
+    EXPECT_EQ(mode_of({0, 255}, "d 0.5\n"), AlphaMode::blend) << "opacity multiplies the map";
 }
 
 TEST(Obj, WarnsOfMissingLibrariesAndTextures) {

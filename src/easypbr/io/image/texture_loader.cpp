@@ -10,6 +10,19 @@
 
 namespace easypbr::io {
 
+std::string_view unquoted(std::string_view name) {
+    if (name.size() > 1 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    return name;
+}
+
+std::string_view without_comment(std::string_view name) {
+    size_t end = name.find('#', 1);
+    while (end != name.npos && name[end - 1] != ' ' && name[end - 1] != '\t') end = name.find('#', end + 1);
+    name = name.substr(0, end);
+    const size_t last = name.find_last_not_of(" \t");
+    return unquoted(name.substr(0, last == name.npos ? 0 : last + 1));
+}
+
 std::string path_from_folder(const std::string& image_path, const fs::path& folder) {
     std::error_code ignored;
     const fs::path relative = fs::proximate(fs::absolute(image_path), folder, ignored);
@@ -19,8 +32,11 @@ std::string path_from_folder(const std::string& image_path, const fs::path& fold
 fs::path TextureLoader::find(const std::string& name) const {
     std::error_code ignored;
     const fs::path named = folder_ / name;
+    if (fs::exists(named, ignored)) return named;
     const fs::path beside = folder_ / fs::path(name).filename();
-    return !fs::exists(named, ignored) && fs::exists(beside, ignored) ? beside : named;
+    if (fs::exists(beside, ignored)) return beside;
+    const std::string plain(without_comment(name));
+    return plain == name ? named : find(plain);
 }
 
 Texture TextureLoader::load(std::string name) {

@@ -11,6 +11,11 @@
 
 namespace easypbr::io {
 
+/// A name in a text file without quotes around it.
+std::string_view unquoted(std::string_view name);
+/// The same, first without a comment: '#' behind a blank and all that follows.
+std::string_view without_comment(std::string_view name);
+
 /// How a mesh file in `folder` (absolute) refers to the image at `image_path`.
 std::string path_from_folder(const std::string& image_path, const fs::path& folder);
 
@@ -21,7 +26,8 @@ class TextureLoader {
     explicit TextureLoader(const fs::path& mesh_file) : folder_(mesh_file.parent_path()) {}
 
     /// A texture with the named image, found under its path or, failing that, beside the mesh file under its
-    /// bare name. Empty, with a warning in the log, when it is missing or damaged.
+    /// bare name; where there is no such file, without_comment() is tried. Empty, with a warning in the log,
+    /// when it is missing or damaged.
     Texture load(std::string name);
 
   private:

@@ -27,6 +27,16 @@ struct MtlEntry {
     std::optional<float> roughness, metallic, exponent;
 };
 
+/// Whether all texels of a texture's channel are near 0 or 1, but for what JPEG makes of them.
+bool is_binary(const Texture& texture) {
+    const Image image = to_u8(*texture.image);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            if (const int value = image.at<uint8_t>(x, y)[texture.channel]; value > 32 && value < 255 - 32)
+                return false;
+    return true;
+}
+
 /// An image with the options that stand before its name.
 struct MapLine {
     Texture texture;
@@ -44,7 +54,7 @@ class MtlParser {
             if (keyword == "newmtl") {
                 finish();
                 entry_.emplace();
-                entry_->material.name = read_rest(p_, end_);
+                entry_->material.name = unquoted(read_rest(p_, end_));
             } else if (entry_ && !keyword.empty() && keyword[0] != '#') {
                 parse_line(keyword);
             }
@@ -134,6 +144,15 @@ class MtlParser {
         entry_->material.normal_scale = map.bump;
     }
 
+    /// The next number of an option; none where it is the begin of a name, as in "2.png".
+    std::optional<float> option_number() {
+        const char* const before = p_;
+        const auto value = number();
+        if (value && (p_ == end_ || *p_ == '\n' || is_blank(*p_))) return value;
+        p_ = before;
+        return {};
+    }
+
     MapLine map_line() {
         MapLine map;
         Eigen::Vector2f scale(1, 1), offset(0, 0);
@@ -148,7 +167,7 @@ class MtlParser {
             else if (option == "-t" || option == "-mm")
                 pair(offset);
             else if (option == "-bm")
-                map.bump = number().value_or(1);
+                map.bump = option_number().value_or(1);
             else if (option == "-clamp")
                 clamp = read_word(p_, end_) == "on";
             else if (option == "-imfchan")
@@ -168,7 +187,7 @@ class MtlParser {
     Eigen::Vector2f pair(const Eigen::Vector2f& otherwise) {
         Eigen::Vector2f value = otherwise;
         for (int i = 0; i < 3; ++i) {
-            const auto next = number();
+            const auto next = option_number();
             if (!next) break;
             if (i < 2) value[i] = *next;
         }
@@ -189,8 +208,8 @@ class MtlParser {
         m.emissive = m.emissive_texture && emission.isZero() ? Vec3(1, 1, 1) : emission;
         m.metallic = std::clamp(entry_->metallic.value_or(m.metallic_texture ? 1.0f : 0.0f), 0.0f, 1.0f);
         m.roughness = std::clamp(roughness(), 0.0f, 1.0f);
-        if (m.opacity < 1) m.alpha_mode = AlphaMode::blend;
-        if (m.opacity_texture) m.alpha_mode = AlphaMode::mask;
+        const bool is_masked = m.opacity_texture && m.opacity == 1 && is_binary(m.opacity_texture);
+        if (m.opacity < 1 || m.opacity_texture) m.alpha_mode = is_masked ? AlphaMode::mask : AlphaMode::blend;
         materials_.try_emplace(m.name, m);
     }
 
@@ -212,7 +231,8 @@ class MtlParser {
 }  // namespace
 
 std::map<std::string, Material> read_mtl(const Source& source, TextureLoader& textures) {
-    return MtlParser(source, textures).parse();
+    const TextSource text(source);
+    return MtlParser(text.source(), textures).parse();
 }
 
 }  // namespace easypbr::io

@@ -105,18 +105,20 @@ class ChunkParser {
         chunk_.face_sizes.push_back(size);
     }
 
-    /// v, v/t, v//n or v/t/n.
+    bool at_corner_end() const { return at_line_end() || is_blank(*p_) || *p_ == '\\'; }
+
+    /// v, v/t, v//n or v/t/n; what is left out behind a slash is not there.
     void parse_corner(const char* line) {
         add_index(line, obj_position, chunk_.corners[obj_position]);
         const size_t corner = chunk_.corners[obj_position].values.size() - 1;
         if (p_ == end_ || *p_ != '/') return fill_missing(corner + 1);
         ++p_;
-        if (p_ != end_ && *p_ != '/') add_attribute(line, obj_uv, corner);
+        if (!at_corner_end() && *p_ != '/') add_attribute(line, obj_uv, corner);
         if (p_ != end_ && *p_ == '/') {
             ++p_;
-            add_attribute(line, obj_normal, corner);
+            if (!at_corner_end()) add_attribute(line, obj_normal, corner);
         }
-        if (!at_line_end() && !is_blank(*p_) && *p_ != '\\') fail_corner(line);
+        if (!at_corner_end()) fail_corner(line);
         fill_missing(corner + 1);
     }
 

@@ -195,20 +195,29 @@ class ObjReader {
         for (size_t i = 0; i < chunks_.size(); ++i) {
             for (const auto& [place, name] : chunks_[i].materials) {
                 use_until(face_begin_[i] + place);
-                current = name;
+                current = unquoted(name);
             }
         }
         use_until(faces_.rows);
     }
 
+    /// Names may have comments behind them, and a '#' of their own, as "Material #25".
     Material find_material(const std::map<std::string, Material>& library, const std::string& name) const {
         if (const auto found = library.find(name); found != library.end()) return found->second;
+        for (const auto& [key, material] : library)
+            if (key == without_comment(name) || without_comment(key) == name) return material;
         if (!name.empty() && !library.empty())
             log_warning(fmt::format("{}: material '{}' is not defined, the default is used",
                                     source_.path.string(), name));
         Material material;
         material.name = name;
         return material;
+    }
+
+    fs::path path_of_library(const std::string& name) const {
+        std::error_code ignored;
+        const fs::path path = source_.path.parent_path() / name;
+        return fs::exists(path, ignored) ? path : source_.path.parent_path() / without_comment(name);
     }
 
     std::map<std::string, Material> load_libraries() const {
@@ -219,7 +228,7 @@ class ObjReader {
             for (const std::string& name : chunk.libraries) {
                 if (!read.insert(name).second) continue;
                 try {
-                    const fs::path path = source_.path.parent_path() / name;
+                    const fs::path path = path_of_library(name);
                     const FileBytes file(path);
                     library.merge(read_mtl(Source(file, path), textures));
                 } catch (const Error& error) {
@@ -359,7 +368,8 @@ class ObjReader {
 
 MeshData read_obj(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    return ObjReader(source).read();
+    const TextSource text(source);
+    return ObjReader(text.source()).read();
 }
 
 }  // namespace easypbr::io
