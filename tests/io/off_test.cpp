@@ -1,6 +1,8 @@
 #include <string>
+#include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 
 namespace easypbr::off_test {
@@ -17,9 +19,9 @@ MeshData read(const std::string& text) {
 
 TEST(Off, ReadsPolygonsCommentsAndCountsOnEitherLine) {
     for (const std::string head :
-         {"OFF\n4 2 5\n", "OFF 4 2 5\n", "# made by a test\nOFF # kind\n\n4 2 5 # counts\n"}) {
+         {"OFF\n4 2 5\n", "OFF 4 2 5\n", "# made by a test\nOFF # kind\n\n4 2 5 # counts\n", "OFF4 2 5\n"}) {
         const MeshData mesh =
-            read(head + "0 0 0\n1 0 0 # corner\n\n1 1 0\n# comment\n0 1 0\n4 0 1 2 3\n3 2 1 0 255 0 0\n");
+            read(head + "0 0 0\n1 0 0 # corner\n\n1 1 0\n# comment\n0 1 0\n4 0 1 2 3\n3 2 1 0\n");
         ASSERT_EQ(mesh.V.rows(), 4);
         EXPECT_EQ(Vec3(mesh.V.row(2)), Vec3(1, 1, 0));
         ASSERT_EQ(mesh.F.rows(), 3);
@@ -27,6 +29,38 @@ TEST(Off, ReadsPolygonsCommentsAndCountsOnEitherLine) {
         EXPECT_EQ(mesh.F(2, 0), 2);
         EXPECT_TRUE(mesh.C.empty());
     }
+}
+
+const std::string square = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+TEST(Off, FacesMayHaveColors) {
+    const MeshData mesh = read(square + "3 0 1 2 255 0 0 # red\n3 0 2 3 0 0 51\n");
+    ASSERT_EQ(mesh.V.rows(), 6) << "a vertex for each colour";
+    ASSERT_EQ(mesh.C.cols(), 3);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(Vec3(mesh.C.row(mesh.F(0, k))), Vec3(1, 0, 0));
+        // Codes of 16 bits are exact for those of 8.
+        EXPECT_FLOAT_EQ(mesh.C(mesh.F(1, k), 2), 0.2f);
+    }
+    EXPECT_EQ(Vec3(mesh.V.row(mesh.F(1, 1))), Vec3(1, 1, 0));
+    EXPECT_EQ(mesh.source_vertex(mesh.F(1, 1)), 2);
+    const MeshData some = read(square + "3 0 1 2 0 0.5 0 0.25\n3 0 2 3\n");
+    ASSERT_EQ(some.C.cols(), 4);
+    EXPECT_NEAR(some.C(some.F(0, 0), 3), 0.25f, 1e-5f) << "codes of 16 bits";
+    EXPECT_EQ(some.C.row(some.F(1, 0)).minCoeff(), 1) << "white";
+}
+
+TEST(Off, SaysWhichColorsOfFacesAreLeftOut) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    EXPECT_TRUE(read(square + "3 0 1 2 7\n3 0 2 3 9\n").C.empty());
+    const std::string colored = "COFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n3 0 1 2 1 0 0\n";
+    EXPECT_EQ(Vec3(read(colored).C.row(0)), Vec3(0, 0, 1));
+    EXPECT_TRUE(read(square + "3 0 1 2\n3 0 2 3\n").C.empty());
+    set_log_sink({});
+    ASSERT_EQ(warnings.size(), 2u);
+    EXPECT_NE(warnings[0].find("2 faces have colours of a colour map"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[1].find("the vertices have colours"), std::string::npos) << warnings[1];
 }
 
 TEST(Off, ReadsAttributesInTheOrderOfTheManual) {

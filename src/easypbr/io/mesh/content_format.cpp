@@ -32,6 +32,12 @@ constexpr std::array<Magic, 9> magics{{{"ply\n", "ply"},
 constexpr std::array<std::string_view, 11> obj_keywords{"v", "vt", "vn", "vp",     "f",     "l",
                                                         "o", "g",  "s",  "mtllib", "usemtl"};
 
+const char* format_of_magic(std::string_view bytes) {
+    for (const Magic& magic : magics)
+        if (bytes.starts_with(magic.begin)) return magic.format;
+    return nullptr;
+}
+
 /// Whether the size is that of a binary STL file with as many facets as it says.
 bool is_binary_stl(std::string_view bytes) {
     constexpr size_t header_bytes = 84, facet_bytes = 50;
@@ -72,6 +78,12 @@ bool names_position(const std::vector<std::string>& words) {
     });
 }
 
+/// "OFF490 518 0": files of ModelNet have no blank before the first count.
+bool is_off_with_count(std::string_view word) {
+    return word.size() > 3 && word.starts_with("off") &&
+           std::ranges::all_of(word.substr(3), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 /// The format that a line of a text belongs to; empty when the line does not tell.
 std::string format_of_line(std::string_view line, bool is_first, bool after_count) {
     const std::vector<std::string> words = words_of(line);
@@ -80,7 +92,7 @@ std::string format_of_line(std::string_view line, bool is_first, bool after_coun
     if (is_comment) return names_position(words) ? "xyz" : "";
     if (words[0].starts_with('{')) return "gltf";
     if (is_first && words[0] == "solid") return "stl";
-    if (words[0].ends_with("off")) return "off";
+    if (words[0].ends_with("off") || is_off_with_count(words[0])) return "off";
     if (words[0] == "version" || words[0] == "fields") return "pcd";
     if (std::ranges::find(obj_keywords, words[0]) != obj_keywords.end()) return "obj";
     if (names_position(words)) return "xyz";
@@ -106,10 +118,12 @@ std::string format_of_text(std::string_view text) {
 
 std::string format_of_content(std::string_view bytes) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    for (const Magic& magic : magics)
-        if (bytes.starts_with(magic.begin)) return magic.format;
+    if (const char* format = format_of_magic(bytes)) return format;
     if (is_binary_stl(bytes)) return "stl";
-    if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+    if (bytes.starts_with(byte_order_mark)) {
+        bytes.remove_prefix(byte_order_mark.size());
+        if (const char* format = format_of_magic(bytes)) return format;
+    }
     const std::string_view begin = bytes.substr(0, looked_at);
     return is_text(begin) ? format_of_text(begin) : std::string();
 }

@@ -192,7 +192,40 @@ void repeat_vertices(const std::vector<int32_t>& rows, MeshData& mesh) {
         mesh.source_vertex = rows_of(mesh.source_vertex, rows);
 }
 
+constexpr float color_steps = 65535;
+
+/// Four codes of 16 bits, of which those of bytes are exact; alpha is 1 where there is none.
+uint64_t color_key(const Eigen::RowVectorXf& color) {
+    uint64_t key = 0;
+    for (Eigen::Index i = 0; i < 4; ++i)
+        key = key << 16 | uint64_t(std::lround((i < color.size() ? color[i] : 1.0f) * color_steps));
+    return key;
+}
+
+/// White for `no_key`, the key of a vertex without a face.
+Eigen::RowVector4f color_of(uint64_t key) {
+    Eigen::RowVector4f color;
+    for (Eigen::Index i = 0; i < 4; ++i) color[i] = float(key >> (48 - 16 * i) & 0xffff) / color_steps;
+    return color;
+}
+
 }  // namespace
+
+CornerSplit color_vertices_by_faces(const ArrayXf::Dense& C, Polygons& polygons, MeshData& mesh) {
+    std::vector<uint64_t> keys(polygons.value_count(), no_key);
+    parallel_for(polygons.rows, polygon_grain / 8, [&](size_t face) {
+        std::fill_n(keys.begin() + ptrdiff_t(polygons.begin_of(face)), polygons.size_of(face),
+                    color_key(C.row(Eigen::Index(face))));
+    });
+    CornerSplit split =
+        split_corners({polygons.values.data(), polygons.value_count()}, keys, size_t(mesh.V.rows()));
+    gather_vertices(split, mesh);
+    ArrayXf::Dense of_vertices(Eigen::Index(split.key.size()), C.cols());
+    parallel_for(split.key.size(), polygon_grain / 4,
+                 [&](size_t i) { of_vertices.row(Eigen::Index(i)) = color_of(split.key[i]).head(C.cols()); });
+    mesh.C = std::move(of_vertices);
+    return split;
+}
 
 void gather_vertices(const CornerSplit& split, MeshData& mesh) {
     if (split.source_vertex.size() == size_t(mesh.V.rows())) return;

@@ -60,6 +60,10 @@ CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const ui
 /// which goes on from the one that there is.
 void gather_vertices(const CornerSplit& split, MeshData& mesh);
 
+/// Makes one vertex of each different pair of a vertex and a colour of the polygons that use it, and fills
+/// the mesh's C. `C` has a row of three or four parts in 0 .. 1 for each polygon.
+CornerSplit color_vertices_by_faces(const ArrayXf::Dense& C, Polygons& polygons, MeshData& mesh);
+
 /// Where there are as many faces as vertices, repeats the last vertex, which no face uses then: what has a
 /// value for each face would pass for values of the vertices. Labels and scalars must be those of vertices.
 void tell_faces_from_vertices(MeshData& mesh);

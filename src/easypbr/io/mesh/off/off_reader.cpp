@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 
+#include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/attributes.h"
@@ -53,7 +57,10 @@ class OffHeaderParser {
         header_.has_uv = take("ST");
         header_.has_color = take("C");
         header_.has_normal = take("N");
-        if (word != "OFF")
+        // Files of ModelNet have no blank before the first count: "OFF490 518 0".
+        if (word.size() > 3 && word.starts_with("OFF") && word[3] >= '0' && word[3] <= '9')
+            p_ = word.data() + 3;
+        else if (word != "OFF")
             fail_at_line(source_, p_,
                          fmt::format("[ST][C][N]OFF expected, found '{}'; other kinds of OFF are not read",
                                      whole.substr(0, 40)));
@@ -99,7 +106,9 @@ class OffReader {
         elements_[1] = {"face", header_.faces, {{"vertex_indices", ScalarType::int32, ScalarType::int32}}};
         check_text_rows(source_, header_.body, elements_);
         std::vector<ElementPlan> plans = plan();
-        read_text_elements(source_, TextRows(source_, header_.body, {.comment = '#'}), plans);
+        const TextRows rows(source_, header_.body, {.comment = '#'});
+        read_text_elements(source_, rows, plans);
+        read_colors_of_faces(rows);
         return make_mesh();
     }
 
@@ -139,6 +148,68 @@ class OffReader {
         return plans;
     }
 
+    /// What stands behind the indices of a face: nothing, a place in a colour map, or three or four numbers.
+    static std::vector<float> color_behind_indices(const char* p, const char* end) {
+        double corners = 0;
+        read_number(p, end, corners);
+        for (double i = 0; i < corners; ++i) read_word(p, end);
+        std::vector<float> color;
+        for (float value = 0; color.size() < 4 && read_number(p, end, value);) color.push_back(value);
+        return color;
+    }
+
+    /// Faces may have colours each on its own; those without one are white beside others.
+    void read_colors_of_faces(const TextRows& rows) {
+        const auto samples = sample_rows(rows, header_.vertices, header_.faces);
+        const bool any = std::ranges::any_of(
+            samples, [&](const char* row) { return color_behind_indices(row, source_.end()).size() > 0; });
+        if (!any) return;
+        ArrayXf::Dense C = ArrayXf::Dense::Constant(Eigen::Index(header_.faces), 4, NAN);
+        std::atomic<size_t> mapped{0}, colored{0};
+        parallel_for(rows.chunks.size(), 1, [&](size_t i) {
+            size_t row = rows.chunks[i].first_row;
+            for_each_row(rows.chunks[i], [&](const char* p) {
+                const size_t face = row++ - header_.vertices;
+                if (face >= header_.faces) return;
+                const std::vector<float> color = color_behind_indices(p, rows.chunks[i].end);
+                if (color.size() == 1 || color.size() == 2) ++mapped;
+                if (color.size() < 3) return;
+                ++colored;
+                for (size_t k = 0; k < color.size(); ++k) C(Eigen::Index(face), Eigen::Index(k)) = color[k];
+            });
+        });
+        if (mapped > 0)
+            log_warning(fmt::format("{}: {} faces have colours of a colour map, which are left out",
+                                    source_.path.string(), mapped.load()));
+        if (colored == 0) return;
+        const bool has_alpha = !C.col(3).array().isNaN().all();
+        face_colors_ = has_alpha ? C : ArrayXf::Dense(C.leftCols(3));
+    }
+
+    /// Calls use(place) for each row of a chunk.
+    template <class Use>
+    static void for_each_row(const TextChunk& chunk, Use&& use) {
+        for (const char* p = chunk.begin; p != chunk.end; p = next_line(p, chunk.end)) {
+            p = skip_blanks(p, chunk.end);
+            if (p == chunk.end) return;
+            if (*p != '\n' && !begins_comment(p, chunk.end, {.comment = '#'})) use(p);
+        }
+    }
+
+    void color_faces(MeshData& mesh) {
+        if (face_colors_.rows() == 0 || faces_.value_count() == 0) return;
+        if (!mesh.C.empty()) {
+            log_warning(fmt::format(
+                "{}: the colours of the faces are left out: the vertices have colours of their own",
+                source_.path.string()));
+            return;
+        }
+        normalize_colors(face_colors_);
+        face_colors_ = face_colors_.unaryExpr([](float value) { return std::isnan(value) ? 1.0f : value; });
+        tidy_colors(face_colors_);
+        color_vertices_by_faces(face_colors_, faces_, mesh);
+    }
+
     MeshData make_mesh() {
         check_positions(source_, V_);
         check_indices(source_, {faces_.values.data(), faces_.value_count()}, header_.vertices, "a face");
@@ -151,6 +222,7 @@ class OffReader {
         if (N_.size()) mesh.N = std::move(N_);
         if (C_.size()) mesh.C = std::move(C_);
         if (UV_.size()) mesh.UV = std::move(UV_);
+        color_faces(mesh);
         triangulate(std::move(faces_), mesh);
         return mesh;
     }
@@ -160,7 +232,7 @@ class OffReader {
     size_t color_parts_ = 0;
     std::vector<Element> elements_{2};
     Array3f::Dense V_, N_;
-    ArrayXf::Dense C_;
+    ArrayXf::Dense C_, face_colors_;
     Array2f::Dense UV_;
     Polygons faces_;
 };
@@ -169,7 +241,8 @@ class OffReader {
 
 MeshData read_off(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    return OffReader(source).read();
+    const TextSource text(source);
+    return OffReader(text.source()).read();
 }
 
 }  // namespace easypbr::io

@@ -33,23 +33,6 @@ std::vector<size_t> find_scalars(const Element& element, const Names& names) {
     return found;
 }
 
-constexpr float color_steps = 65535;
-
-/// Four codes of 16 bits, of which those of bytes are exact; alpha is 1 where there is none.
-uint64_t color_key(const Eigen::RowVectorXf& color) {
-    uint64_t key = 0;
-    for (Eigen::Index i = 0; i < 4; ++i)
-        key = key << 16 | uint64_t(std::lround((i < color.size() ? color[i] : 1.0f) * color_steps));
-    return key;
-}
-
-/// White for `no_key`, the key of a vertex without a face.
-Eigen::RowVector4f color_of(uint64_t key) {
-    Eigen::RowVector4f color;
-    for (Eigen::Index i = 0; i < 4; ++i) color[i] = float(key >> (48 - 16 * i) & 0xffff) / color_steps;
-    return color;
-}
-
 /// Reads one file.
 class PlyReader {
   public:
@@ -236,19 +219,7 @@ class PlyReader {
                                                     : "the vertices have colours of their own"));
             return;
         }
-        std::vector<uint64_t> keys(faces_.value_count(), no_key);
-        parallel_for(faces_.rows, 1 << 13, [&](size_t face) {
-            std::fill_n(keys.begin() + ptrdiff_t(faces_.begin_of(face)), faces_.size_of(face),
-                        color_key(C.row(Eigen::Index(face))));
-        });
-        const auto split =
-            split_corners({faces_.values.data(), faces_.value_count()}, keys, size_t(mesh_.V.rows()));
-        gather_vertices(split, mesh_);
-        ArrayXf::Dense of_vertices(Eigen::Index(split.key.size()), C.cols());
-        parallel_for(split.key.size(), 1 << 14, [&](size_t i) {
-            of_vertices.row(Eigen::Index(i)) = color_of(split.key[i]).head(C.cols());
-        });
-        mesh_.C = std::move(of_vertices);
+        const CornerSplit split = color_vertices_by_faces(C, faces_, mesh_);
         follow_split(split, {E_.data(), size_t(E_.size())});
     }
 
@@ -267,8 +238,7 @@ class PlyReader {
     void set_front() {
         if (!camera_.allFinite()) return;
         Box3d box;
-        for (Eigen::Index i = 0; i < mesh_.V.rows(); ++i)
-            box.extend(Vec3(mesh_.V.row(i)).cast<double>());
+        for (Eigen::Index i = 0; i < mesh_.V.rows(); ++i) box.extend(Vec3(mesh_.V.row(i)).cast<double>());
         const Vec3d way = camera_.cast<double>() - mesh_.offset - box.center();
         if (way.norm() > box.diagonal().norm() / 2) mesh_.front = way.normalized();
     }
@@ -314,8 +284,9 @@ class PlyReader {
 
 }  // namespace
 
-MeshData read_ply(const Source& source) {
-    if (source.bytes.empty()) fail(source, "the file is empty");
+MeshData read_ply(const Source& given) {
+    if (given.bytes.empty()) fail(given, "the file is empty");
+    const Source source = given.without_mark();
     PlyHeader header = parse_ply_header(source);
     if (has_compressed_splats(header)) return read_compressed_splats(source, header);
     return PlyReader(source, std::move(header)).read();
