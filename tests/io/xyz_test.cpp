@@ -156,6 +156,23 @@ TEST(Xyz, TheLastCellMayBeEmpty) {
     }
 }
 
+TEST(Xyz, CellsBetweenTabsMayBeEmptyBelowNames) {
+    const MeshData mesh = read("heat\tx\ty\tz\tdepth of it\n5\t1\t2\t3\t\n\t4\t5\t6\t7\n\t7\t8\t9\t\r\n");
+    ASSERT_EQ(mesh.V.rows(), 3);
+    EXPECT_EQ(Vec3(mesh.V.row(1)), Vec3(4, 5, 6));
+    EXPECT_EQ(Vec3(mesh.V.row(2)), Vec3(7, 8, 9));
+    const Array1f &heat = scalar_named(mesh, "heat").values,
+                  &depth = scalar_named(mesh, "depth of it").values;
+    EXPECT_EQ(heat[0], 5);
+    EXPECT_TRUE(std::isnan(heat[1]));
+    EXPECT_TRUE(std::isnan(depth[0]));
+    EXPECT_EQ(depth[1], 7);
+    EXPECT_TRUE(std::isnan(depth[2]));
+    // Tabs that align columns are blanks.
+    EXPECT_EQ(Vec3(read("x\ty\tz\n1\t\t2\t\t3\n").V.row(0)), Vec3(1, 2, 3));
+    EXPECT_EQ(Vec3(read("x\ty\tz\n  1\t2 \t 3\n").V.row(0)), Vec3(1, 2, 3));
+}
+
 TEST(Xyz, LabelsThatAreNoneAreCounted) {
     const std::string text =
         "x,y,z,label\n1,2,3,4.0\n1,2,3,4.5\n1,2,3,4294967296\n1,2,3,-2147483648\n"

@@ -19,6 +19,12 @@ inline const char* skip_blanks(const char* p, const char* end) {
     return p;
 }
 
+/// The same up to a delimiter, which may be a blank itself.
+inline const char* skip_blanks_before(const char* p, const char* end, char delimiter) {
+    while (p != end && is_blank(*p) && *p != delimiter) ++p;
+    return p;
+}
+
 /// The line feed that ends the line of `p`, or `end`.
 inline const char* line_end(const char* p, const char* end) {
     const void* found = std::memchr(p, '\n', size_t(end - p));

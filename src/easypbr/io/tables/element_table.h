@@ -77,7 +77,8 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
 struct TextStyle {
     /// What follows it up to the line's end is ignored, and what follows "//"; 0: there are no comments.
     char comment = 0;
-    char delimiter = 0;  ///< between numbers, beside blanks (',' or ';'); nothing between two is NaN; 0: none
+    char delimiter =
+        0;  ///< between numbers, beside blanks (',', ';' or a tab); nothing between two is NaN; 0: none
 };
 
 /// Whether a comment stands at `p`.

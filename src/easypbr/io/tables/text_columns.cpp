@@ -52,8 +52,8 @@ std::string without_unit(std::string_view cell) {
 }
 
 /// The names in a line, or nothing when they do not say where the points are.
-std::vector<std::string> header_names(std::string_view line) {
-    const TextStyle style{.delimiter = delimiter_in(line)};
+std::vector<std::string> header_names(std::string_view line, char delimiter) {
+    const TextStyle style{.delimiter = delimiter};
     std::vector<std::string> names;
     for (const std::string_view cell : split_cells(line.data(), line.data() + line.size(), style))
         names.push_back(without_unit(cell));
@@ -150,7 +150,7 @@ std::vector<std::string_view> split_cells(const char* p, const char* end, const 
     const char* stop = line_end(p, end);
     bool goes_on = p != stop;
     while (goes_on) {
-        p = skip_blanks(p, stop);
+        p = skip_blanks_before(p, stop, style.delimiter);
         const char* first = p;
         p = skip_quoted(p, stop);
         while (p != stop && (style.delimiter ? *p != style.delimiter : !is_blank(*p))) {
@@ -174,6 +174,7 @@ std::vector<std::string_view> split_cells(const char* p, const char* end, const 
 
 TextLayout find_text_layout(const Source& source) {
     TextLayout layout;
+    std::vector<std::string> names_between_tabs;
     layout.style.comment = '#';
     layout.body = source.begin();
     while (layout.body != source.end()) {
@@ -188,12 +189,21 @@ TextLayout find_text_layout(const Source& source) {
         if (is_row && cells.size() > 1) break;
         if (is_row)
             layout.count = parse_count(source, cells[0]);
-        else if (auto names = header_names(line); !names.empty())
+        else if (auto names = header_names(line, layout.style.delimiter); !names.empty()) {
             layout.names = std::move(names);
-        else if (!commented && !cells.empty())
+            names_between_tabs = header_names(line, '\t');
+        } else if (!commented && !cells.empty())
             fail_at_line(source, layout.body,
                          fmt::format("numbers or names of columns expected, found '{}'", line.substr(0, 40)));
         layout.body = next_line(layout.body, source.end());
+    }
+    const char* const row_end = line_end(layout.body, source.end());
+    const auto tabs = size_t(std::count(layout.body, row_end, '\t'));
+    // Tabs are more than blanks where they are as many as between the names: cells may be empty.
+    if (layout.style.delimiter == 0 && tabs > 0 && tabs + 1 == names_between_tabs.size() &&
+        std::ranges::find(names_between_tabs, "") == names_between_tabs.end()) {
+        layout.style.delimiter = '\t';
+        layout.names = std::move(names_between_tabs);
     }
     return layout;
 }

@@ -27,11 +27,14 @@ struct ListPart {
 /// The lists of a chunk, per plan and column.
 using ChunkLists = std::vector<std::vector<ListPart>>;
 
-/// The first character of a row at or after `p`, or null when only empty lines and comments are left.
+/// The begin of a row at or after `p`, the begin of a line: its first character, or that of the line where
+/// tabs separate cells, of which the first may be empty. Null when only empty lines and comments are left.
 const char* next_row(const char* p, const char* end, const TextStyle& style) {
     while (p != end) {
+        const char* const line = p;
         p = skip_blanks(p, end);
-        if (p != end && *p != '\n' && !begins_comment(p, end, style)) return p;
+        if (p != end && *p != '\n' && !begins_comment(p, end, style))
+            return style.delimiter == '\t' ? line : p;
         p = next_line(p, end);
     }
     return nullptr;
@@ -46,8 +49,8 @@ size_t count_rows(const char* p, const char* end, const TextStyle& style) {
 /// Passes over the delimiter before every number but the first of a row. True when no number follows.
 bool at_empty_cell(const char*& p, const char* end, const TextStyle& style, bool is_first) {
     if (!style.delimiter) return false;
-    p = skip_blanks(p, end);
-    if (!is_first && p != end && *p == style.delimiter) p = skip_blanks(p + 1, end);
+    p = skip_blanks_before(p, end, style.delimiter);
+    if (!is_first && p != end && *p == style.delimiter) p = skip_blanks_before(p + 1, end, style.delimiter);
     return p == end || *p == '\n' || *p == style.delimiter;
 }
 
@@ -122,7 +125,7 @@ class ChunkReader {
 
     /// Whether a delimiter stands before `p`, blanks aside: the row's last cell is there and empty.
     bool has_delimiter_before(const char* p) const {
-        while (p != chunk_.begin && is_blank(p[-1])) --p;
+        while (p != chunk_.begin && is_blank(p[-1]) && p[-1] != style_.delimiter) --p;
         return p != chunk_.begin && p[-1] == style_.delimiter;
     }
 
