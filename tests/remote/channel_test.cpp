@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <future>
 #include <iterator>
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -119,6 +122,29 @@ TEST(Mailbox, KeepsTheOrderAndPutsTheHeaderFirst) {
     EXPECT_EQ(taken[1].bytes.size(), FrameHeader::size + 3);
     EXPECT_EQ(taken[1].bytes.back(), std::byte(9));
     EXPECT_TRUE(mailbox.take(0).empty());
+}
+
+// Its function runs on the thread that draws, which cannot wait for its own end.
+TEST(ChannelEnd, APanelMayCloseItsChannelAndDropIt) {
+    for (const bool drops : {false, true}) {
+        auto channel = std::make_unique<Channel>(Scene(), Settings());
+        // Shared, as the function may be called once more while the thread ends.
+        const auto closed = std::make_shared<std::promise<bool>>();
+        const auto first = std::make_shared<std::once_flag>();
+        channel->add_panel("Ends", [&channel, drops, closed, first](app::Widgets&) {
+            std::call_once(*first, [&] {
+                channel->close();
+                const bool is_open = channel->is_open();
+                if (drops) channel.reset();
+                closed->set_value(!is_open);
+            });
+        });
+        channel->receive(1, hello);
+        std::future<bool> result = closed->get_future();
+        ASSERT_EQ(result.wait_for(std::chrono::seconds(30)), std::future_status::ready);
+        EXPECT_TRUE(result.get());
+        if (channel) channel->close();
+    }
 }
 
 }  // namespace

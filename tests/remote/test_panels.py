@@ -1,10 +1,14 @@
 """Panels of the program in clients: what they show, what clients do to them."""
 
+import contextlib
+import pathlib
 import threading
 import weakref
 
 import numpy as np
 import pytest
+
+from client import Client
 
 
 def widget_of(message, panel, name):
@@ -93,6 +97,39 @@ def test_the_window_has_the_same_values(view, connect):
     seen.clear()
     view.screenshot((400, 300))
     assert seen and set(seen) == {5.0}
+
+
+def threads_named(name):
+    count = 0
+    for task in pathlib.Path("/proc/self/task").iterdir():
+        with contextlib.suppress(OSError):  # It may end meanwhile.
+            count += (task / "comm").read_text().strip() == name
+    return count
+
+
+def test_a_panel_may_close_its_server(view):
+    """Its function runs on the thread that draws, which cannot wait for its own end."""
+    before = threads_named("easypbr view"), threads_named("easypbr network")
+    server, done, failures = view.serve(), threading.Event(), []
+
+    def panel(ui):
+        if done.is_set():
+            return
+        try:
+            server.close()
+        except Exception as error:  # It would be shown in the panel only.
+            failures.append(error)
+        done.set()
+
+    client = Client(server.url)
+    server._handle.add_panel("Ends", panel)
+    assert done.wait(30)
+    assert not failures
+    server.close()  # waits for the thread
+    assert (threads_named("easypbr view"), threads_named("easypbr network")) == before
+    client.close()
+    with view.serve() as again:  # Nothing is left behind.
+        Client(again.url).close()
 
 
 def test_a_closed_server_keeps_no_function(view):

@@ -90,7 +90,8 @@ class Server {
     /// Nothing happens when there is none.
     void remove_panel(const std::string& name);
 
-    /// Says goodbye to all clients and frees the port. Nothing happens the second time.
+    /// Says goodbye to all clients, frees the port and waits for the end of the drawing; a panel's function,
+    /// which the drawing calls, does not wait: the next call or the destructor does.
     void close();
     bool is_open() const;
 
@@ -140,7 +141,8 @@ class Channel {
     /// Nothing happens when there is none.
     void remove_panel(const std::string& name);
 
-    /// Ends the drawing. Nothing happens the second time.
+    /// Ends the drawing and waits for that; a panel's function, which the drawing calls, does not wait: the
+    /// next call or the destructor does.
     void close();
     bool is_open() const;
 

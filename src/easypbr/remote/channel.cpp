@@ -1,7 +1,9 @@
 #include "easypbr/remote/server.h"
 
 #include <atomic>
+#include <memory>
 #include <mutex>
+#include <thread>
 
 #include "easypbr/remote/mailbox.h"
 #include "easypbr/remote/served_files.h"
@@ -60,6 +62,9 @@ Channel::Channel(const Scene& scene, const Settings& settings)
 
 Channel::~Channel() {
     close();
+    if (!parts_->views.draws_here()) return;
+    // The last one that used it was a panel's function: the thread that it runs on cannot wait for itself.
+    std::thread([parts = std::shared_ptr<Parts>(std::move(parts_))] { parts->views.stop(); }).detach();
 }
 
 void Channel::receive(uint64_t client, std::string_view text) {
@@ -111,9 +116,10 @@ void Channel::remove_panel(const std::string& name) {
 }
 
 void Channel::close() {
-    const std::lock_guard lock(parts_->closing);
-    if (!parts_->open.exchange(false)) return;
-    parts_->mailbox.shut();
+    // A panel's function that closes what draws it waits for nobody: whoever closes meanwhile waits for it.
+    std::unique_lock lock(parts_->closing, std::defer_lock);
+    if (!parts_->views.draws_here()) lock.lock();
+    if (parts_->open.exchange(false)) parts_->mailbox.shut();
     parts_->views.stop();
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <memory>
 #include <mutex>
+#include <thread>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
@@ -102,6 +104,9 @@ Server::Server(const Scene& scene, const Settings& settings, const ServeOptions&
 
 Server::~Server() {
     close();
+    if (!parts_->views.draws_here()) return;
+    // The last one that used it was a panel's function: the thread that it runs on cannot wait for itself.
+    std::thread([parts = std::shared_ptr<Parts>(std::move(parts_))] { parts->views.stop(); }).detach();
 }
 
 std::string Server::url() const {
@@ -150,9 +155,10 @@ void Server::remove_panel(const std::string& name) {
 }
 
 void Server::close() {
-    const std::lock_guard lock(parts_->closing);
-    if (!parts_->open.exchange(false)) return;
-    parts_->network.stop();
+    // A panel's function that closes what draws it waits for nobody: whoever closes meanwhile waits for it.
+    std::unique_lock lock(parts_->closing, std::defer_lock);
+    if (!parts_->views.draws_here()) lock.lock();
+    if (parts_->open.exchange(false)) parts_->network.stop();
     parts_->views.stop();
 }
 

@@ -30,6 +30,7 @@ void Views::start() {
 
 void Views::stop() {
     inbox_.close();
+    if (draws_here()) return;
     if (thread_.joinable()) thread_.join();
     // The program's functions may hold what holds the views.
     inbox_.take_tasks();
@@ -37,10 +38,16 @@ void Views::stop() {
     shared_.end();
 }
 
+bool Views::draws_here() const {
+    return drawing_ == std::this_thread::get_id();
+}
+
 void Views::run() {
+    drawing_ = std::this_thread::get_id();
     // What is drawn when the server ends is given up.
     const InterruptScope scope([this] { return inbox_.is_closed(); });
     while (!inbox_.is_closed()) turn();
+    drawing_ = std::thread::id();
 }
 
 void Views::turn() {

@@ -1,6 +1,7 @@
 // Views: the thread that draws what clients see.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -23,8 +24,11 @@ class Views {
     Views& operator=(const Views&) = delete;
 
     void start();
-    /// Ends the thread. Nothing is published afterwards.
+    /// Ends the thread. Nothing is published afterwards. On the thread itself, which a panel's function runs
+    /// on, it only has it end after that function: a later call waits for the end.
     void stop();
+    /// Whether the caller runs on the thread.
+    bool draws_here() const;
 
     /// Any thread: what the program has changed since the last call is changed in all views; what clients
     /// have changed stays.
@@ -50,6 +54,7 @@ class Views {
     std::map<ViewId, std::unique_ptr<View>> own_;
     ViewId refined_ = shared_view;
     std::thread thread_;
+    std::atomic<std::thread::id> drawing_;  ///< that of run()
 };
 
 }  // namespace easypbr::remote
