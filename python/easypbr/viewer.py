@@ -326,7 +326,7 @@ class Viewer(Sharing):
         """Shows an image in the window, beside the scene: an array or tensor of height x width (x 1, 3 or 4), of uint8,
         uint16, floats, bool or integers. Under the name of one that is there it takes its place, as in every iteration of a
         training loop. Values are shown as they are: 0 to 255, of floats 0 to 1, or `range`; of a single channel all of
-        them, in a `colormap` (see colormap()). Without a window it is kept, for screenshots."""
+        them, in a `colormap` (see colormap()). At most 16384 pixels a side. Without a window it is kept, for screenshots."""
         array = np.asarray(as_numpy(image))
         if array.dtype.kind not in "buif":
             raise ArgumentError(f"show_image: expected numbers, got {array.dtype}")
@@ -434,7 +434,7 @@ class Viewer(Sharing):
         return self._handle.pick(x, y, size)
 
     def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> NDArray[Any]:
-        """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
+        """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale, 0.5 to 4."""
         return self._handle.screenshot(size, scale)
 
 

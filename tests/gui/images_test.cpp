@@ -69,6 +69,8 @@ TEST(ImagePanels, RefuseWhatCannotBeShown) {
     EXPECT_THROW(panels.show("", Image(1, 1, 1, PixelType::u8)), ArgumentError);
     EXPECT_THROW(panels.show("a", Image()), ArgumentError);
     EXPECT_THROW(panels.show("a", Image(1, 1, 2, PixelType::u8)), ArgumentError);
+    EXPECT_THROW(panels.show("a", Image(16385, 1, 1, PixelType::u8)), ArgumentError);
+    EXPECT_THROW(panels.show("a", Image(1, 16385, 1, PixelType::u8)), ArgumentError);
     EXPECT_THROW(panels.show("a", Image(1, 1, 1, PixelType::u8), {1.0f, 1.0f, {}}), ArgumentError);
     EXPECT_THROW(panels.show("a", Image(1, 1, 1, PixelType::u8), {NAN, {}, {}}), ArgumentError);
     EXPECT_TRUE(panels.names().empty());

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "easypbr/app/camera_text.h"
 #include "easypbr/app/channels.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 
@@ -86,8 +89,15 @@ TEST_F(Live, ALeftDragTurnsTheCameraAndUndoTurnsItBack) {
                 (before - session_.view_point(size).target).norm(), 1e-6);
     step({key('Z', true)});
     EXPECT_LT((camera_position() - before).norm(), 1e-9);
-    step({key('Y', true)});
-    EXPECT_LT((camera_position() - after).norm(), 1e-9);
+    InputEvent redo = key('Y', true);
+    for (int way = 0; way < 2; ++way) {
+        step({redo});
+        EXPECT_LT((camera_position() - after).norm(), 1e-9);
+        step({key('Z', true)});
+        EXPECT_LT((camera_position() - before).norm(), 1e-9);
+        redo = key('Z', true);
+        redo.shift = true;
+    }
 }
 
 TEST_F(Live, AQuickDragCountsThoughItIsOverBeforeTheFirstFrame) {
@@ -158,6 +168,25 @@ TEST_F(Live, InputThatWaitsDoesNotKeepAScreenFromItsEnd) {
     view_.drawing().draw_finished({.interrupt = [&] { return ++asked <= 20; }});
     EXPECT_TRUE(view_.drawing().picture().is_complete());
     EXPECT_EQ(asked, 0);
+}
+
+TEST_F(Live, ScreenshotsOfNoPicturesSizeAndOfOtherScalesAreRefused) {
+    for (const float scale : {0.0f, -1.0f, 1e-3f, 0.49f, 4.01f, std::nanf(""), HUGE_VALF})
+        EXPECT_THROW(view_.finished_screen(size, scale), ArgumentError) << scale;
+    for (const Vec2i& wrong : {Vec2i(0, 5), Vec2i(5, 0), Vec2i(-3, 5), Vec2i(5, 65537)})
+        EXPECT_THROW(view_.finished_screen(wrong), ArgumentError) << wrong.transpose();
+    EXPECT_EQ(view_.finished_screen({64, 48}, 4).width(), 64);
+    // 4 of the screen times 4 of the panels: their font would be larger than a texture.
+    view_.set_panel_scale(4);
+    view_.update({}, {64, 48}, 4, 0.02);
+    EXPECT_EQ(view_.state().screen.scale, 8);
+}
+
+TEST_F(Live, AScreenshotIsGivenUpBetweenTwoFrames) {
+    int asked = 0;
+    const InterruptScope scope([&] { return ++asked > 2; });
+    // The panels alone take three frames to settle.
+    EXPECT_THROW(view_.finished_screen(size), Interrupted);
 }
 
 TEST_F(Live, AnAutomaticCameraShowsTheContentBelowTheMenuBar) {

@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/io/settings/presets.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::gui::user_panels_test {
@@ -92,6 +93,82 @@ TEST_F(UserPanel, WidgetsTakeWhatIsClicked) {
         step({typed});
     }
     EXPECT_EQ(name, "runs1");
+}
+
+// As a quick click of a mouse, a touch pad or a program comes: both events lie ready for one frame.
+TEST_F(UserPanel, AClickThatIsOverWithinOneFrameCounts) {
+    bool on = false;
+    std::string choice = "near";
+    view_.add_panel("Training", [&](app::Widgets& ui) {
+        ui.checkbox("on", on);
+        ui.combo("choice", choice, {"near", "far"});
+    });
+    settle();
+    const auto quick_click = [&](Vec2d where) {
+        step({at(Kind::move, where)});
+        step({at(Kind::press, where), at(Kind::release, where)});
+        settle();
+    };
+    quick_click(place("Training/on"));
+    EXPECT_TRUE(on);
+    quick_click(place("Training/on"));
+    EXPECT_FALSE(on);
+    quick_click(place("Training/choice"));
+    quick_click(place("Training/choice/far"));
+    EXPECT_EQ(choice, "far");
+    const std::string preset = "Menu/preset " + io::preset_names().at(0);
+    EXPECT_FALSE(view_.places().contains(preset));
+    quick_click(place("Menu/preset"));
+    EXPECT_TRUE(view_.places().contains(preset));
+}
+
+TEST_F(UserPanel, EscapeClosesListsAndMenusBeforeTheWindow) {
+    double rate = 0.1;
+    std::string choice = "near";
+    view_.add_panel("Training", [&](app::Widgets& ui) {
+        ui.combo("choice", choice, {"near", "far"});
+        ui.slider("rate", rate, 0, 1);
+    });
+    settle();
+    InputEvent escape;
+    escape.kind = Kind::key_down;
+    escape.key = app::key::escape;
+    const std::string preset = "Menu/preset " + io::preset_names().at(0);
+    for (const auto& [opener, item] :
+         {std::pair<std::string, std::string>("Training/choice", "Training/choice/far"),
+          {"Menu/preset", preset}}) {
+        click(place(opener));
+        settle();
+        EXPECT_TRUE(view_.places().contains(item));
+        step({escape});
+        settle();
+        EXPECT_FALSE(view_.places().contains(item));
+        EXPECT_FALSE(view_.wants_to_close()) << opener;
+    }
+    step({at(Kind::move, place("Training/rate"))});
+    step({at(Kind::press, place("Training/rate"))});
+    step({escape});
+    EXPECT_FALSE(view_.wants_to_close()) << "the slider is held";
+    step({at(Kind::release, place("Training/rate"))});
+    settle();
+    step({escape});
+    EXPECT_TRUE(view_.wants_to_close());
+}
+
+// An error that leaves the panels is met again in each frame.
+TEST_F(UserPanel, WhatFailsInEveryFrameIsToldOnceAndTheViewComesToRest) {
+    int calls = 0;
+    view_.state().own_menu = [&] {
+        ++calls;
+        throw ArgumentError("no such line");
+    };
+    settle();
+    click({15, 8});  // the first menu, View
+    for (int i = 0; i < 20; ++i) step();
+    EXPECT_GT(calls, 2);
+    ASSERT_EQ(view_.drawing().notifications().list().size(), 1u);
+    EXPECT_EQ(view_.drawing().notifications().list()[0].text, "no such line");
+    EXPECT_FALSE(view_.is_busy());
 }
 
 TEST_F(UserPanel, ShowsWhatItsFunctionThrowsAndGoesOn) {

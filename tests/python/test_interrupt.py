@@ -60,6 +60,14 @@ def test_render(scene, size, samples):
     np.testing.assert_array_equal(view.render((64, 48), samples=4), Viewer((64, 48), scene=scene).render(samples=4))
 
 
+def test_screenshot(scene):
+    view = Viewer((640, 480), {"image.samples": 65536}, scene=scene)
+    view.render((64, 48), samples=2)
+    assert seconds_until_interrupted(view.screenshot) < LIMIT_S
+    view.settings["image.samples"] = 2
+    assert view.screenshot((64, 48)).shape == (48, 64, 4)
+
+
 def test_the_first_picture_with_rays_and_effects(scene):
     """Also while shadow maps, trees and environments are made."""
     scene.environment = np.random.default_rng(1).random((512, 1024, 3), dtype=np.float32)

@@ -66,7 +66,7 @@ def test_range_and_colormap(view):
 @pytest.mark.parametrize("name, image, options", [
     ("", np.zeros((2, 2)), {}), ("a", np.zeros((2, 2, 2)), {}), ("a", np.zeros(4), {}), ("a", np.zeros((0, 3)), {}),
     ("a", np.zeros((2, 2)), {"range": (1, 1)}), ("a", np.zeros((2, 2)), {"range": (0, np.nan)}), ("a", "text", {}),
-    ("a", np.zeros((2, 2), complex), {}), ("a", None, {}),
+    ("a", np.zeros((2, 2), complex), {}), ("a", None, {}), ("a", np.zeros((16385, 2)), {}), ("a", np.zeros((2, 16385, 3)), {}),
 ])
 def test_what_is_no_image_is_refused(view, name, image, options):
     with pytest.raises(easypbr.ArgumentError):
@@ -76,6 +76,15 @@ def test_what_is_no_image_is_refused(view, name, image, options):
     with pytest.raises(easypbr.UnknownNameError):
         view.remove_image("nothing")
     assert view.image_names() == []
+
+
+@pytest.mark.parametrize("options", [
+    {"scale": 0}, {"scale": -1}, {"scale": float("nan")}, {"scale": 1e-3}, {"scale": 5}, {"size": (0, 5)}, {"size": (-3, 5)},
+])
+def test_no_screenshot_has_such_a_size_or_scale(view, options):
+    with pytest.raises(easypbr.ArgumentError):
+        view.screenshot(**options)
+    assert view.screenshot((64, 48)).shape == (48, 64, 4)
 
 
 def test_a_camera_is_shown_with_its_image(view):

@@ -266,6 +266,40 @@ def test_the_windows_own_text_comes_back_from_the_clipboard(window):
     wait_until(lambda: window.update() and np.allclose(window.view.camera.position, before, atol=1e-6))
 
 
+def test_a_quick_click_counts_on_panels(window):
+    """Press and release come with one update, as those of a touch pad after a slow frame."""
+    left, top, right, bottom = window.state["places"]["Scene/visible ball"]
+    for expected in (False, True):
+        window.mouse("mousemove", round((left + right) / 2), round((top + bottom) / 2), "click", 1)
+        window.settle()
+        assert window.view.scene.get("ball").style.visible is expected
+
+
+@pytest.mark.parametrize("layout", ["de", "fr"])
+def test_undo_goes_by_the_letters_of_the_layout(window, layout):
+    """German keyboards have Z where others have Y, French ones where others have W."""
+    def at(camera):
+        return np.allclose(window.view.camera.position, camera, atol=1e-9)
+
+    before = window.view.camera.position.copy()
+    window.mouse("mousemove", 400, 300, "mousedown", 1)
+    window.mouse("mousemove", 460, 310)
+    window.mouse("mouseup", 1)
+    window.settle()
+    after = window.view.camera.position.copy()
+    assert not at(before)
+    try:
+        window.display.run("setxkbmap", layout)
+        window.settle()
+        for redo in ("ctrl+y", "ctrl+shift+z"):
+            window.key("ctrl+z")
+            wait_until(lambda: window.update() and at(before))
+            window.key(redo)
+            wait_until(lambda: window.update() and at(after))
+    finally:
+        window.display.run("setxkbmap", "us")
+
+
 def test_text_that_is_no_camera_is_told(window):
     subprocess.run(["xclip", "-selection", "clipboard", "-i"], env=window.display.environment, input="a recipe", text=True,
                    timeout=30, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

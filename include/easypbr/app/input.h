@@ -11,7 +11,8 @@ namespace easypbr::app {
 
 enum class MouseButton { left, right, middle };
 
-/// Letters and digits are their capital ASCII codes; these are the others that mean something here.
+/// Letters and digits are their capital ASCII codes, letters as the keyboard's layout has them; these are the
+/// others that mean something here.
 namespace key {
 inline constexpr int space = 32, escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260,
                      del = 261, right = 262, left = 263, down = 264, up = 265, page_up = 266, page_down = 267,

@@ -156,7 +156,8 @@ class Viewer {
     /// corner; nothing where there is no surface.
     std::optional<app::Pick> pick(Vec2d pixel, std::optional<Vec2i> size = std::nullopt);
 
-    /// What the window would show: picture and panels, refined; needs no display.
+    /// What the window would show: picture and panels, refined; needs no display. `scale` is that of the
+    /// panels, from 0.5 to 4.
     Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
 
     /// A panel of the user's own in the window, drawn by `function` in each of its frames, and in the pages
@@ -168,7 +169,8 @@ class Viewer {
     void remove_panel(const std::string& name);
 
     /// Shows an image in the window, beside the scene; headless it is kept for screenshots. Of 1, 3 or 4
-    /// channels; values are shown as they are. Under the name of one that is there it takes its place.
+    /// channels and at most 16384 pixels a side; values are shown as they are. Under the name of one that is
+    /// there it takes its place.
     void show_image(const std::string& name, Image image, const app::ImageLook& look = {});
     void remove_image(const std::string& name);
 

@@ -109,8 +109,8 @@ class LiveDrawing {
     void leave(const InputEvent& event);
     /// Offers an event to the program's handlers(). Returns whether one of them took it.
     bool offer(const InputEvent& event);
-    /// Acts on an event: the camera moves, a click selects, files that were dropped are opened, Ctrl+Z, Y, S,
-    /// C, V and K do what docs/viewer.md says, Escape wishes to close.
+    /// Acts on an event: the camera moves, a click selects, files that were dropped are opened, Ctrl+Z,
+    /// Ctrl+Shift+Z, Ctrl+Y, S, C, V and K do what docs/viewer.md says, Escape wishes to close.
     void handle(const InputEvent& event);
     /// Lets the time of the frame pass for camera, path and notifications, then takes a step of the picture.
     /// Returns whether it has changed.
@@ -162,7 +162,7 @@ class LiveDrawing {
     LiveDrawing(Session& session, std::unique_ptr<Own> own);
 
     bool shortcut(const InputEvent& event);
-    void control_shortcut(int key);
+    void control_shortcut(int key, bool shift);
     void move_camera(const InputEvent& event);
     void open(const std::vector<std::string>& paths);
     void move_along_path(double seconds);

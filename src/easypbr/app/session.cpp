@@ -13,9 +13,8 @@
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
-namespace {
 
-void check_size(Vec2i size) {
+void check_picture_size(Vec2i size) {
     if (size.x() < 1 || size.y() < 1 || size.x() > max_image_side || size.y() > max_image_side)
         throw ArgumentError(fmt::format("picture size {}x{}: width and height must be 1 to {}", size.x(),
                                         size.y(), max_image_side));
@@ -24,8 +23,6 @@ void check_size(Vec2i size) {
             fmt::format("picture size {}x{}: expected {} pixels at most, such as 32768x32768 or 65536x16384",
                         size.x(), size.y(), max_picture_pixels));
 }
-
-}  // namespace
 
 struct Session::Refined {
     Prepared prepared;
@@ -104,7 +101,7 @@ SceneSnapshot Session::snapshot() {
 }
 
 ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
-    check_size(size_or(size));
+    check_picture_size(size_or(size));
     const SceneSnapshot scene = snapshot();
     ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size_or(size), {}, insets_);
     latched_content_.follow(scene, *settings_, resolved);
@@ -117,7 +114,7 @@ Prepared Session::prepare(const PictureOptions& options) {
     prepared.options.size = size_or(options.size);
     prepared.options.samples = options.samples.value_or(settings_->image.samples);
     prepared.options.encoding = options.encoding;
-    check_size(prepared.options.size);
+    check_picture_size(prepared.options.size);
     {
         const Stopwatch watch(timing_.images);
         prepared.scene = snapshot();

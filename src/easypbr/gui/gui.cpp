@@ -4,6 +4,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "easypbr/core/error.h"
@@ -175,6 +176,10 @@ bool Gui::take(const app::InputEvent& event) {
             io.KeyCtrl = event.control;
             io.KeyShift = event.shift;
             io.KeyAlt = event.alt;
+            if (event.kind == Kind::key_down && event.key == app::key::escape && (popup_ || active_)) {
+                closes_popups_ = popup_;
+                return true;
+            }
             return wants_keys_;
         case Kind::text:
             io.AddInputCharacter(event.code);
@@ -209,6 +214,10 @@ void Gui::prepare(const GuiState& state, double seconds) {
     }
     io.DisplaySize = ImVec2(float(state.screen.size.x()), float(state.screen.size.y()));
     io.DeltaTime = float(std::max(seconds, 1e-4));
+}
+
+void Gui::hand_over_input() {
+    ImGuiIO& io = ImGui::GetIO();
     for (size_t i = 0; i < down_.size(); ++i) {
         const bool pressed = std::exchange(pressed_[i], false);
         io.MouseDown[i] = down_[i] || pressed;
@@ -236,24 +245,39 @@ void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
     }
     if (more) more();
     keys_window(state);
-    notifications(state);
+}
+
+void Gui::tell(GuiState& state, const std::string& failure) {
+    // What fails in every frame is told once.
+    if (!failure.empty() && failure != failure_) state.notify(failure, true);
+    failure_ = failure;
 }
 
 bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
                   const std::function<void()>& more) {
     const GuiScope scope(context_);
     prepare(state, seconds);
+    hand_over_input();
     places_.clear();
     ImGui::NewFrame();
+    if (std::exchange(closes_popups_, false) && !ImGui::GetCurrentContext()->OpenPopupStack.empty())
+        ImGui::ClosePopupToLevel(0, true);
     if (picture) show_picture(state, picture);
+    std::exception_ptr other;
+    std::string failure;
     try {
         draw_panels(state, more);
     } catch (const Error& error) {
-        // What was begun is ended, so that the next frame is drawn as ever.
-        ImGui::ErrorCheckEndFrameRecover(nullptr);
-        state.notify(error.what(), true);
+        failure = error.what();
+    } catch (...) {
+        other = std::current_exception();
     }
+    // What was begun is ended, so that the next frame is drawn as ever.
+    if (other || !failure.empty()) ImGui::ErrorCheckEndFrameRecover(nullptr);
+    tell(state, failure);
+    notifications(state);
     ImGui::Render();
+    if (other) std::rethrow_exception(other);
     const ImGuiIO& io = ImGui::GetIO();
     panels_.clear();
     for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)

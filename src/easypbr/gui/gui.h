@@ -24,7 +24,7 @@ class Gui {
     Gui& operator=(const Gui&) = delete;
 
     /// Tells the GUI what happened. Returns whether the event is its own: over a panel, or typed into a
-    /// field.
+    /// field. Escape is its own while a menu or list is open, which it closes, and while is_active().
     bool take(const app::InputEvent& event);
     /// The pointer drags a slider or the like, or a field is typed into.
     bool is_active() const { return active_; }
@@ -46,7 +46,12 @@ class Gui {
     const ItemPlaces& places() const { return places_; }
 
   private:
+    /// Font, theme, size and time of a frame.
     void prepare(const GuiState& state, double seconds);
+    /// The buttons that are down, and those that were for a moment since the last frame.
+    void hand_over_input();
+    /// Makes a notification of what failed in a frame; empty: nothing did.
+    void tell(GuiState& state, const std::string& failure);
     void draw_panels(GuiState& state, const std::function<void()>& more);
 
     ImGuiContext* context_ = nullptr;
@@ -59,6 +64,8 @@ class Gui {
     void take_button(const app::InputEvent& event);
 
     bool wants_keys_ = false, active_ = false, popup_ = false;
+    bool closes_popups_ = false;               ///< in the next frame
+    std::string failure_;                      ///< of the last frame, told
     std::vector<Eigen::AlignedBox2d> panels_;  ///< where windows of the last frame take the mouse
     /// A click within one frame is held down for all of it, or the GUI would not see it.
     std::array<bool, 3> down_{}, pressed_{};

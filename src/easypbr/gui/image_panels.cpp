@@ -88,6 +88,9 @@ bool look_rows(const Image& image, ImageLook& look) {
 void ImagePanels::show(const std::string& name, Image image, const ImageLook& look) {
     if (name.empty()) throw ArgumentError("an image needs a name");
     if (image.empty()) throw ArgumentError(fmt::format("image '{}' is empty", name));
+    if (std::max(image.width(), image.height()) > most_image_side)
+        throw ArgumentError(fmt::format("image '{}': expected {} x {} pixels at most, got {} x {}", name,
+                                        most_image_side, most_image_side, image.width(), image.height()));
     if (image.channels() == 2)
         throw ArgumentError(fmt::format("image '{}': expected 1, 3 or 4 channels, got 2", name));
     const auto wrong = [](const std::optional<float>& value) { return value && !std::isfinite(*value); };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/gl/context.h"
 
 namespace easypbr::gui {
@@ -18,6 +19,16 @@ using Kind = InputEvent::Kind;
 constexpr double panels_seconds = 0.05;
 /// Pictures after which a screenshot waits no longer for one that stays.
 constexpr uint64_t most_changes = 8;
+/// Frames of the GUI after which a screenshot of a picture that stays waits no longer.
+constexpr int most_gui_frames = 16;
+/// Of the panels, of the screen's scale times panel_scale: fonts beyond are larger than textures may be.
+constexpr float least_scale = 0.25f, most_scale = 8;
+
+void check_scale(const char* what, float scale) {
+    if (!(scale >= least_panel_scale && scale <= most_panel_scale))
+        throw ArgumentError(
+            fmt::format("{}: expected {} to {}, got {}", what, least_panel_scale, most_panel_scale, scale));
+}
 
 }  // namespace
 
@@ -63,9 +74,7 @@ void LiveView::stop_recording() {
 }
 
 void LiveView::set_panel_scale(float scale) {
-    if (!(scale >= least_panel_scale && scale <= most_panel_scale))
-        throw ArgumentError(fmt::format("panel scale: expected {} to {}, got {}", least_panel_scale,
-                                        most_panel_scale, scale));
+    check_scale("panel scale", scale);
     state_.screen.panel_scale = scale;
     touch();
 }
@@ -96,7 +105,7 @@ app::LiveNeeds LiveView::needs() const {
 }
 
 bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, float scale, double seconds) {
-    scale *= state_.screen.panel_scale;
+    scale = std::clamp(scale * state_.screen.panel_scale, least_scale, most_scale);
     bool changed = state_.screen.size != size || state_.screen.scale != scale || !events.empty();
     state_.screen.size = size;
     state_.screen.scale = scale;
@@ -155,7 +164,7 @@ bool LiveView::shortcut(const InputEvent& event) {
     if (panel >= 0 && panel < panel_count) return panels.open[size_t(panel)] ^= true, true;
     switch (event.key) {
         case app::key::escape:
-            return std::exchange(panels.keys, false);
+            return std::exchange(panels.keys, false) || state_.manipulator.drag.axis >= 0;
         case 'H':
             panels.shown = !panels.shown;
             return true;
@@ -209,6 +218,8 @@ Image LiveView::finished_now() {
 }
 
 Image LiveView::finished_screen(Vec2i size, float scale) {
+    check_scale("screenshot: scale", scale);
+    app::check_picture_size(size);
     touch();
     // Input is taken afterwards: a picture begun anew would never end.
     struct Restored {
@@ -217,8 +228,14 @@ Image LiveView::finished_screen(Vec2i size, float scale) {
         ~Restored() { function = std::move(kept); }
     } const restored{input_waits_};
     const uint64_t begun = live_.picture().statistics().pictures;
-    do update({}, size, scale, 1.0 / 60);
-    while (is_busy() && live_.picture().statistics().pictures < begun + most_changes);
+    int idle = 0;
+    do {
+        check_interrupt();
+        const InterruptScope whole({});  // Panels must be drawn whole.
+        update({}, size, scale, 1.0 / 60);
+        idle = live_.is_busy() ? 0 : idle + 1;
+    } while (is_busy() && idle < most_gui_frames &&
+             live_.picture().statistics().pictures < begun + most_changes);
     return screen();
 }
 

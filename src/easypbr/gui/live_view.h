@@ -42,7 +42,8 @@ class LiveView {
     /// The screen, RGBA u8, row 0 on top: picture and GUI. Throws ArgumentError before the first update().
     Image screen();
     /// The screen when all is refined; draws until then. What panels and callbacks change in every frame is
-    /// taken as it is after a few.
+    /// taken as it is after a few. Throws ArgumentError for a size that no picture has, and for a scale that
+    /// is not from 0.5 to 4; Interrupted between two frames.
     Image finished_screen(Vec2i size, float scale = 1);
 
     /// What is looked at, without the panels.
@@ -80,8 +81,8 @@ class LiveView {
     /// Calls a user's function; see app::EventHandlers.
     bool guarded(const std::function<void()>& function) { return live_.handlers().guarded(function); }
 
-    /// How large panels, text and handles are, 1 as the screen asks for. Throws ArgumentError unless it is
-    /// from 0.5 to 4.
+    /// How large panels, text and handles are, 1 as the screen asks for; 8 times at most with the screen's
+    /// own scale. Throws ArgumentError unless it is from 0.5 to 4.
     void set_panel_scale(float scale);
 
   private:

@@ -49,6 +49,7 @@ void node_row(GuiState& state, const Mesh& node, const std::string& path, const 
     bool visible = data->style.visible.value_or(true);
     if (ImGui::Checkbox("##visible", &visible))
         change_look(state, path, "visible", [visible](MeshData& d) { d.style.visible = visible; });
+    note_place("Scene/visible " + path);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", visible ? "Hide" : "Show");
     if (open && !data->children.empty()) {
         for (size_t i = 0; i < data->children.size(); ++i) {

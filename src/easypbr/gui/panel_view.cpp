@@ -27,10 +27,10 @@ constexpr KeyLine key_lines[] = {{"Left drag", "turn about the target"},
                                  {"F1 to F11", "hide or show one panel"},
                                  {"K", "key of the camera path"},
                                  {"Ctrl+C  Ctrl+V", "camera to and from the clipboard"},
-                                 {"Ctrl+Z  Ctrl+Y", "undo, redo"},
+                                 {"Ctrl+Z  Ctrl+Y", "undo, redo (or Ctrl+Shift+Z)"},
                                  {"Ctrl+S", "save the settings"},
                                  {"?", "this list"},
-                                 {"Escape", "close"}};
+                                 {"Escape", "close the list or menu, or the window"}};
 
 void preset_menu(GuiState& state) {
     const bool is_open = ImGui::BeginMenu("Preset");

@@ -110,9 +110,12 @@ struct WindowCallbacks {
         modify(event, mods);
     }
     static void scroll(GLFWwindow* window, double x, double y) { add(window, Kind::scroll).scroll = {x, y}; }
-    static void key(GLFWwindow* window, int key, int, int action, int mods) {
+    static void key(GLFWwindow* window, int key, int scancode, int action, int mods) {
         InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::key_up : Kind::key_down);
-        event.key = key;
+        KeyCodes& codes = of(window).key_codes_;
+        event.key = action == GLFW_RELEASE
+                        ? codes.up(key)
+                        : codes.down(key, glfw().glfwGetKeyName(key, scancode), mods & GLFW_MOD_CONTROL);
         modify(event, mods);
     }
     static void text(GLFWwindow* window, unsigned code) { add(window, Kind::text).code = code; }

@@ -8,6 +8,7 @@
 
 #include "easypbr/app/input.h"
 #include "easypbr/core/image.h"
+#include "easypbr/gui/key_codes.h"
 
 struct GLFWwindow;
 
@@ -56,6 +57,7 @@ class Window {
 
     GLFWwindow* window_ = nullptr;
     std::vector<app::InputEvent> events_;
+    KeyCodes key_codes_;
     std::optional<Vec2d> pointer_;  ///< at the last event, in screen coordinates
     bool needs_present_ = true;
     bool is_shown_ = false;

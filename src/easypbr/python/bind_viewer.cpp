@@ -225,10 +225,13 @@ void bind_window(ViewerClass& viewer) {
             "screenshot",
             [](SharedViewer& self, const nb::object& size, float scale) {
                 const std::optional<Vec2i> pixels = optional_size(size);
-                Image screen = self.run([&](Viewer& v) {
-                    const Uninterrupted whole;
-                    return v.screenshot(pixels, scale);
-                });
+                Image screen;
+                try {
+                    screen = self.run([&](Viewer& v) { return v.screenshot(pixels, scale); });
+                } catch (const nb::python_error&) {
+                    self.take_exception();  // A panel met the same Ctrl-C.
+                    throw;
+                }
                 raise_kept(self);
                 return to_numpy(std::move(screen));
             },

@@ -1,0 +1,43 @@
+// Which letter a key stands for: shortcuts go by what is printed on it, the camera's keys by where it lies.
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <string_view>
+
+namespace easypbr::gui {
+
+/// The keys that are down in a window, as codes of app::InputEvent.
+class KeyCodes {
+  public:
+    /// The code of a key that goes down, or that repeats. `key`: its place, as the letter that a US keyboard
+    /// has there; `name`: what the layout has there, UTF-8, null when it types nothing. With Control it is
+    /// the layout's letter; without, W A S D Q E are places, and all other letters those of the layout. A
+    /// layout without ASCII letters leaves the place's.
+    int down(int key, const char* name, bool control) {
+        return down_.try_emplace(key, code(key, name, control)).first->second;
+    }
+    /// The code that the key had when it went down, whatever else has changed meanwhile.
+    int up(int key) {
+        const auto held = down_.find(key);
+        if (held == down_.end()) return key;
+        const int code = held->second;
+        down_.erase(held);
+        return code;
+    }
+
+  private:
+    static bool flies(int code) { return std::ranges::count(std::string_view("WASDQE"), code) > 0; }
+    static int code(int key, const char* name, bool control) {
+        const bool is_letter =
+            name && name[0] != 0 && name[1] == 0 && std::isalpha(static_cast<unsigned char>(name[0]));
+        if (!is_letter) return key;
+        const int letter = std::toupper(static_cast<unsigned char>(name[0]));
+        return !control && (flies(key) || flies(letter)) ? key : letter;
+    }
+
+    std::map<int, int> down_;  ///< code by place
+};
+
+}  // namespace easypbr::gui

@@ -1,0 +1,53 @@
+// Letters of keyboard layouts: shortcuts go by them, the camera's keys by place.
+#include "easypbr/gui/key_codes.h"
+
+#include <gtest/gtest.h>
+
+#include "easypbr/app/input.h"
+
+namespace easypbr::gui::key_codes_test {
+namespace {
+
+/// What a key gives that is pressed and released.
+int pressed(int key, const char* name, bool control) {
+    KeyCodes codes;
+    const int code = codes.down(key, name, control);
+    EXPECT_EQ(codes.up(key), code);
+    return code;
+}
+
+TEST(KeyCodes, ShortcutsGoByTheLayout) {
+    // German: Z and Y are swapped. French: W types z, Q types a.
+    EXPECT_EQ(pressed('Y', "z", true), 'Z');
+    EXPECT_EQ(pressed('Z', "y", true), 'Y');
+    EXPECT_EQ(pressed('W', "z", true), 'Z');
+    EXPECT_EQ(pressed('Q', "a", true), 'A');
+    EXPECT_EQ(pressed('Z', "z", true), 'Z');
+    EXPECT_EQ(pressed('Z', "y", false), 'Y');
+}
+
+TEST(KeyCodes, TheCameraFliesByPlace) {
+    EXPECT_EQ(pressed('W', "z", false), 'W');
+    EXPECT_EQ(pressed('Q', "a", false), 'Q');
+    // The French Z types w: it is no second key that flies.
+    EXPECT_EQ(pressed('Z', "w", false), 'Z');
+}
+
+TEST(KeyCodes, OtherKeysKeepTheirCode) {
+    EXPECT_EQ(pressed('Z', "\u044f", true), 'Z');  // Russian ya
+    EXPECT_EQ(pressed('7', "7", true), '7');
+    EXPECT_EQ(pressed('7', "\u00e8", false), '7');  // French
+    EXPECT_EQ(pressed(app::key::escape, nullptr, false), app::key::escape);
+}
+
+// With Control let go first it would otherwise stay down for ever.
+TEST(KeyCodes, AKeyGoesUpAsItWentDown) {
+    KeyCodes codes;
+    EXPECT_EQ(codes.down('W', "z", true), 'Z');
+    EXPECT_EQ(codes.down('W', "z", false), 'Z');  // repeats
+    EXPECT_EQ(codes.up('W'), 'Z');
+    EXPECT_EQ(codes.up('W'), 'W');
+}
+
+}  // namespace
+}  // namespace easypbr::gui::key_codes_test
