@@ -152,6 +152,58 @@ TEST(Animations, ASkinOfANodeWithoutSizeStaysFinite) {
     EXPECT_TRUE(mesh.V().allFinite());
 }
 
+// A skin is where its joints are, whatever its own node's scale: also where that has no inverse.
+TEST(Animations, ASkinWhoseNodeIsScaledToNothingFollowsItsJoints) {
+    Mesh mesh = triangle();
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].translation = Vec3d(7, 0, 0);
+    rig.nodes[0].scale = Vec3d(0, 1, 1);
+    Animations(std::move(rig)).apply(0, 0.5);
+    EXPECT_LT((mesh.T_world_mesh() * mesh.V().row(2).transpose().cast<double>() - Vec3d(2, 1, 0)).norm(),
+              1e-6);
+}
+
+// All of it, joints too, hangs from a node of scale 0: a point, which has finite vertices all the same.
+TEST(Animations, ASkinBelowWhatIsScaledToNothingStaysFinite) {
+    Mesh armature, mesh = triangle();
+    armature.add_child(mesh);
+    AnimationRig rig = skinned(mesh);
+    rig.nodes.resize(4);
+    rig.nodes[0].parent = rig.nodes[1].parent = 3;
+    rig.nodes[3].mesh = armature;
+    AnimationChannel grow =
+        channel(Interpolation::linear, {0, 1}, ArrayXf::Dense{{0, 0, 0}, {1, 1, 1}}, AnimatedProperty::scale);
+    grow.node = 3;
+    rig.animations[0].channels.push_back(grow);
+    Animations animations(std::move(rig));
+    animations.apply(0, 0.5);
+    animations.apply(0, 0);
+    EXPECT_TRUE(mesh.V().array().isFinite().all());
+    for (int i = 0; i < 3; ++i)
+        EXPECT_LT((mesh.T_world_mesh() * mesh.V().row(i).transpose().cast<double>()).norm(), 1e-6);
+    animations.apply(0, 0.5);
+    // Half as large as that of SkinsFollowTheirJoints.
+    EXPECT_LT((mesh.T_world_mesh() * mesh.V().row(2).transpose().cast<double>() - Vec3d(1, 0.5, 0)).norm(),
+              1e-6);
+}
+
+TEST(Animations, AWholeDurationAfterTheBeginningIsTheEnd) {
+    Mesh mesh = triangle();
+    AnimationRig rig = skinned(mesh);
+    rig.animations[0].duration_s = 2.1f;
+    rig.animations[0].channels[0].times = {0, 2.1f};
+    Animations animations(std::move(rig));
+    // 2.1f is less than 2.1 by 1e-7 of it.
+    for (const double time_s : {2.1, double(2.1f), 2 * double(2.1f)}) {
+        animations.apply(0, time_s);
+        EXPECT_NEAR(mesh.V()(2, 0), 4, 1e-5) << time_s;
+    }
+    for (const double time_s : {0.0, -double(2.1f), 2.1001}) {
+        animations.apply(0, time_s);
+        EXPECT_NEAR(mesh.V()(2, 0), 0, 1e-3) << time_s;
+    }
+}
+
 TEST(Animations, MorphTargetsAddUp) {
     Mesh mesh = triangle();
     AnimationRig rig;

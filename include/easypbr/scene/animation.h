@@ -124,9 +124,10 @@ class Animations {
     double duration_s(size_t index) const;
 
     /// Puts the meshes where they are at a time of an animation: poses and visibility of nodes, vertices and
-    /// normals of what has skins or morph targets, and materials. With `loop` the time goes around, else the
-    /// animation rests at its ends. What the animation leaves alone is at rest. Throws NameError for an
-    /// unknown index, ArgumentError for a time that is not finite.
+    /// normals of what has skins or morph targets, and materials. With `loop` the time goes around, and a
+    /// whole number of durations after the beginning is the end; else the animation rests at its ends. What
+    /// the animation leaves alone is at rest. Throws NameError for an unknown index, ArgumentError for a time
+    /// that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
     /// Puts the vertices and normals where they are without an animation: by the weights at rest, and where
@@ -161,7 +162,10 @@ class Animations {
     std::map<std::string, Value> placed(const std::vector<AnimatedItem<Value>>& items,
                                         AnimatedProperty property, size_t index, double time_s,
                                         bool loop) const;
-    void deform(AnimationNode& node, const Eigen::Affine3d& T_world_node, const std::vector<float>& weights,
+    /// A mesh that is where its joints are, whose node is scaled to nothing: it takes its parent's pose, as
+    /// nothing else hangs from it.
+    bool is_without_own_pose(size_t node, const Pose& pose) const;
+    void deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
     void put_materials(const Animation& animation, double time_s);
 

@@ -155,6 +155,11 @@ void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& 
     });
 }
 
+/// Scaled to nothing along an axis at least: it has no inverse.
+bool is_flat(const Eigen::Affine3d& T) {
+    return !(std::abs(T.linear().determinant()) >= 1e-30);
+}
+
 void show(Mesh& mesh, bool visible) {
     Style style = mesh.style();
     if (style.visible.value() == visible) return;
@@ -294,8 +299,10 @@ double Animations::time_in(size_t index, double time_s, bool loop) const {
     const double duration = duration_s(index);
     if (!std::isfinite(time_s))
         throw ArgumentError(fmt::format("animation: expected a finite time, got {}", time_s));
-    if (loop && duration > 0) time_s -= duration * std::floor(time_s / duration);
-    return time_s;
+    if (!loop || !(duration > 0)) return time_s;
+    const double turns = std::floor(time_s / duration), within = time_s - duration * turns;
+    // Keys are floats: 2.1 s is not exactly where the animation ends that lasts as long.
+    return turns >= 1 && within <= 1e-6 * duration ? duration : within;
 }
 
 std::vector<Animations::Pose> Animations::pose_at(size_t index, double time_s, bool loop) const {
@@ -312,7 +319,7 @@ std::vector<std::pair<Mesh, Eigen::Affine3d>> Animations::motion(size_t index, d
         if (!node.mesh || node.matrix) continue;
         const Eigen::Affine3d end = to[i].matrix();
         // What is scaled to nothing is nowhere.
-        if (std::abs(end.linear().determinant()) < 1e-30) continue;
+        if (is_flat(end)) continue;
         motion.emplace_back(*node.mesh, end.inverse(Eigen::Affine) * from[i].matrix());
     }
     return motion;
@@ -380,13 +387,23 @@ void Animations::apply(size_t index, double time_s, bool loop) {
     for (const size_t i : order_) {
         AnimationNode& node = rig_.nodes[i];
         if (!node.mesh) continue;
-        node.mesh->set_T_parent_mesh(poses[i].matrix());
+        node.mesh->set_T_parent_mesh(is_without_own_pose(i, poses[i]) ? Eigen::Affine3d::Identity()
+                                                                      : poses[i].matrix());
         if (poses[i].visible) show(*node.mesh, *poses[i].visible);
     }
     put_materials(rig_.animations[index], time_in(index, time_s, loop));
     for (const size_t i : order_)
-        if (AnimationNode& node = rig_.nodes[i]; node.mesh && !node.deformation.empty())
-            deform(node, T_world_nodes[i], poses[i].weights, T_world_nodes);
+        if (AnimationNode& node = rig_.nodes[i]; node.mesh && !node.deformation.empty()) {
+            const Eigen::Affine3d T_world_parent =
+                node.parent < 0 ? Eigen::Affine3d::Identity() : T_world_nodes[size_t(node.parent)];
+            deform(node, is_without_own_pose(i, poses[i]) ? T_world_parent : T_world_nodes[i],
+                   poses[i].weights, T_world_nodes);
+        }
+}
+
+bool Animations::is_without_own_pose(size_t node, const Pose& pose) const {
+    return rig_.nodes[node].skin >= 0 && is_flat(pose.matrix()) &&
+           std::ranges::find(rig_.nodes, int(node), &AnimationNode::parent) == rig_.nodes.end();
 }
 
 void Animations::put_at_rest() {
@@ -413,21 +430,21 @@ void Animations::put_materials(const Animation& animation, double time_s) {
     }
 }
 
-void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_node,
+void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh,
                         const std::vector<float>& weights,
                         const std::vector<Eigen::Affine3d>& T_world_nodes) {
     const Deformation& from = node.deformation;
     Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N)};
     add_targets(from, weights, out);
-    // What is scaled to nothing is nowhere.
-    const bool has_place = std::abs(T_world_node.linear().determinant()) >= 1e-30;
-    if (node.skin >= 0 && !from.joints.empty() && has_place) {
-        // The joints say where the vertices are in the world; the mesh is drawn with its node's pose.
+    if (node.skin >= 0 && !from.joints.empty()) {
+        // The joints say where the vertices are in the world; the mesh is drawn with its own pose. Below what
+        // is scaled to nothing it is a point or flat whatever its vertices are.
+        if (is_flat(T_world_mesh)) return;
         const Skin& skin = rig_.skins[size_t(node.skin)];
-        const Eigen::Affine3d T_node_world = T_world_node.inverse();
+        const Eigen::Affine3d T_mesh_world = T_world_mesh.inverse();
         std::vector<Eigen::Affine3d> T_mesh_joints;
         for (size_t k = 0; k < skin.joints.size(); ++k)
-            T_mesh_joints.push_back(T_node_world * T_world_nodes[size_t(skin.joints[k])] *
+            T_mesh_joints.push_back(T_mesh_world * T_world_nodes[size_t(skin.joints[k])] *
                                     skin.T_joint_at_rest[k]);
         follow_joints(from, T_mesh_joints, out);
     }
