@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <set>
+#include <utility>
 
 #include "easypbr/app/output.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/material_table.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
@@ -34,6 +37,31 @@ void show_loaded(Session& session, AnimationPlayer& player, const io::LoadedScen
     if (!loaded.animations.empty()) player.add(name, loaded.animations, session.scene());
     for (const auto& [light, value] : loaded.lights)
         session.scene().set_light(light_name(name, light), value);
+}
+
+/// Images that a mesh and what hangs from it were textured with.
+void add_textures(const Mesh& mesh, std::set<fs::path>& files) {
+    const auto data = mesh.snapshot();
+    for (const Material& material : data->materials)
+        for (const MaterialTexture& use : material_textures())
+            if (const std::string& path = (material.*use.texture).path; !path.empty()) files.insert(path);
+    for (const Mesh& child : data->children) add_textures(child, files);
+}
+
+/// Files beside `path` that hold a part of it, and that it names: materials of OBJ, buffers of glTF.
+void add_parts(const fs::path& path, std::set<fs::path>& files) {
+    const std::string kind = extension_of(path);
+    const std::string part = kind == "obj" ? "mtl" : kind == "gltf" ? "bin" : "";
+    if (part.empty()) return;
+    constexpr size_t looked_at = 16 << 20;
+    std::string text(looked_at, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(text.data(), std::streamsize(text.size()));
+    text.resize(size_t(in.gcount()));
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path.parent_path() / ".", ignored))
+        if (extension_of(entry.path()) == part && text.find(entry.path().filename().string()) != text.npos)
+            files.insert(entry.path());
 }
 
 }  // namespace
@@ -69,19 +97,36 @@ void SceneFiles::close(const std::string& name) {
 }
 
 void SceneFiles::watch(const fs::path& path, const std::string& name) {
-    watched_.push_back({path, name, fs::last_write_time(path)});
+    Watched file{path, name, {}};
+    note_files(file);
+    watched_.push_back(std::move(file));
+}
+
+void SceneFiles::note_files(Watched& watched) const {
+    std::set<fs::path> files = {watched.path};
+    if (session_.scene().contains(watched.name)) add_textures(session_.scene().get(watched.name), files);
+    add_parts(watched.path, files);
+    std::error_code gone;
+    for (const fs::path& file : files) {
+        const auto time = fs::last_write_time(file, gone);
+        watched.times.try_emplace(file, gone ? fs::file_time_type::min() : time);
+    }
 }
 
 void SceneFiles::advance(double seconds) {
     if (watched_.empty() || (since_watch_ += seconds) < watch_seconds) return;
     since_watch_ = 0;
     for (Watched& file : watched_) try {
-            std::error_code gone;  // A file that is being replaced may be missing for a moment.
-            const auto time = fs::last_write_time(file.path, gone);
-            if (gone || time == file.time) continue;
-            file.time = time;
+            bool changed = false;
+            for (auto& [path, known] : file.times) {
+                std::error_code gone;  // A file that is being replaced may be missing for a moment.
+                const auto time = fs::last_write_time(path, gone);
+                changed |= !gone && std::exchange(known, time) != time;
+            }
+            if (!changed) continue;
             show_loaded(session_, player_, io::load_scene(file.path, load_options(session_.settings())),
                         file.name);
+            note_files(file);
             notifications_.add("Reloaded " + file.name);
         } catch (const Error& error) {
             notifications_.add(error.what(), true);

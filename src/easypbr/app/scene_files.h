@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ class SceneFiles {
     /// when it is not there.
     void close(const std::string& name);
 
-    /// Shows the file again under `name` whenever it changes.
+    /// Shows the file again under `name` whenever it, an image that textures it, or a file that it names for
+    /// its materials (MTL) or buffers (glTF) changes.
     void watch(const std::filesystem::path& path, const std::string& name);
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
     void advance(double seconds);
@@ -47,8 +49,10 @@ class SceneFiles {
     struct Watched {
         std::filesystem::path path;
         std::string name;
-        std::filesystem::file_time_type time;
+        std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all its files
     };
+    /// Adds the files that the watched one is made of now.
+    void note_files(Watched& watched) const;
 
     Session& session_;
     AnimationPlayer& player_;
