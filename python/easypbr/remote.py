@@ -26,6 +26,11 @@ class Server:
         return self._handle.url
 
     @property
+    def urls(self) -> list[str]:
+        """`url`, and the same at each address of this machine when all are listened on (`bind="0.0.0.0"`)."""
+        return self._handle.urls
+
+    @property
     def watch_url(self) -> str:
         """What to open in a browser that may watch and change nothing."""
         return self._handle.watch_url

@@ -37,6 +37,11 @@ TEST(Hosts, NamesAndAddressesThatWereGivenAre) {
     EXPECT_TRUE(rules.allows_host("GPU.example.org"));
     EXPECT_TRUE(rules.allows_host("[fe80::1]:80"));
     EXPECT_FALSE(rules.allows_host("10.0.0.6"));
+    const HostRules all("0.0.0.0", {}, {});
+    for (const std::string& address : addresses_of("0.0.0.0")) EXPECT_TRUE(all.allows_host(address + ":80"));
+    EXPECT_FALSE(all.allows_host("203.0.113.9"));  // of no interface: RFC 5737
+    EXPECT_FALSE(all.allows_host("evil.example"));
+    EXPECT_EQ(addresses_of("10.0.0.5"), std::vector<std::string>{"10.0.0.5"});
     EXPECT_THROW(HostRules("", {"https://gpu"}, {}), ArgumentError);
     EXPECT_THROW(HostRules("", {""}, {}), ArgumentError);
 }

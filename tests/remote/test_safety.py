@@ -398,6 +398,18 @@ def test_a_port_that_is_taken_is_told(view, server):
         view.serve(port=server.port)
 
 
+def test_all_addresses_of_the_machine_are_answered_to(view):
+    """A literal address cannot be a name of somebody else's."""
+    with view.serve(bind="0.0.0.0") as server:
+        first, *others = server.urls
+        assert first == server.url
+        for url in others:
+            host = urlsplit(url).netloc
+            assert not host.startswith("127.")
+            assert fetch(server, "/", Host=host)[0].status == 200
+        assert fetch(server, "/", Host="203.0.113.9")[0].status == 403  # of no interface: RFC 5737
+
+
 def test_other_addresses_are_warned_of(view, caplog):
     view.serve(bind="0.0.0.0").close()
     assert "seen by the network" in caplog.text

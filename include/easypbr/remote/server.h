@@ -70,6 +70,8 @@ class Server {
     /// With the secret that lets a client in: "http://127.0.0.1:8123/#token=...". Of a Unix socket the name
     /// is "localhost", for the port that it is forwarded to.
     std::string url() const;
+    /// url(), and the same at each address of this machine when all are listened on (0.0.0.0, ::).
+    std::vector<std::string> urls() const;
     /// Lets a client watch and nothing else.
     std::string watch_url() const;
     /// The command that makes a remote server's port, or socket, reachable on one's own machine.

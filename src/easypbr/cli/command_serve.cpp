@@ -107,7 +107,8 @@ std::string ssh_host() {
 }
 
 void tell_urls(const remote::Server& server) {
-    fmt::print("control: {}\nwatch:   {}\n", server.url(), server.watch_url());
+    for (const std::string& url : server.urls()) fmt::print("control: {}\n", url);
+    fmt::print("watch:   {}\n", server.watch_url());
     if (const std::string host = ssh_host(); !host.empty())
         fmt::print("on your own machine first: {}\n", server.forward_command(host));
     fmt::print("Ctrl-C ends\n");

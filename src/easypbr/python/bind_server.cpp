@@ -115,6 +115,7 @@ void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
     nb::class_<Server>(module, "ServerHandle", "A view in the browsers of other machines.")
         .def_prop_ro("url", &Server::url)
         .def_prop_ro("watch_url", &Server::watch_url)
+        .def_prop_ro("urls", &Server::urls)
         .def_prop_ro("port", &Server::port)
         .def_prop_ro("is_open", &Server::is_open)
         .def("forward_command", &Server::forward_command, nb::arg("host"))

@@ -1,9 +1,13 @@
 #include "easypbr/remote/hosts.h"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
 
 #include <algorithm>
 #include <cctype>
+#include <memory>
 
 #include "easypbr/core/error.h"
 
@@ -60,7 +64,33 @@ std::string checked_origin(std::string origin) {
     return origin;
 }
 
+/// An interface's address as it stands in a link; empty for those of loopback, of a link alone (fe80::) and
+/// of other families.
+std::string interface_text(const sockaddr* address, bool with_v6) {
+    char text[INET6_ADDRSTRLEN] = "";
+    if (address && address->sa_family == AF_INET) {
+        inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(address)->sin_addr, text, sizeof text);
+    } else if (address && address->sa_family == AF_INET6 && with_v6) {
+        const in6_addr& v6 = reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr;
+        if (!IN6_IS_ADDR_LINKLOCAL(&v6)) inet_ntop(AF_INET6, &v6, text, sizeof text);
+    }
+    return is_loopback(text) ? "" : text;
+}
+
 }  // namespace
+
+std::vector<std::string> addresses_of(const std::string& bind) {
+    if (bind != "0.0.0.0" && bind != "::") return {bind};
+    ifaddrs* first = nullptr;
+    if (getifaddrs(&first) != 0) return {};
+    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> interfaces(first, freeifaddrs);
+    std::vector<std::string> addresses;
+    for (const ifaddrs* each = first; each; each = each->ifa_next)
+        if (std::string text = interface_text(each->ifa_addr, bind == "::");
+            !text.empty() && std::ranges::find(addresses, text) == addresses.end())
+            addresses.push_back(std::move(text));
+    return addresses;
+}
 
 bool is_loopback(std::string_view name) {
     const auto digits_and_dots = [](unsigned char c) { return std::isdigit(c) || c == '.'; };
@@ -72,6 +102,8 @@ bool is_loopback(std::string_view name) {
 HostRules::HostRules(const std::string& bind, const std::vector<std::string>& names,
                      const std::vector<std::string>& origins) {
     if (!bind.empty()) names_.push_back(lower(bind));
+    // No name of somebody else's resolves to an address that the browser was given as such.
+    for (const std::string& address : addresses_of(bind)) names_.push_back(lower(address));
     for (const std::string& name : names) {
         if (!is_name(name) || name_of(name.find(':') == name.npos ? name : "[" + name + "]").empty())
             throw ArgumentError(fmt::format("host name '{}': expected a name without a port", name));

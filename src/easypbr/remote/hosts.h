@@ -18,7 +18,8 @@ class HostRules {
     HostRules(const std::string& bind, const std::vector<std::string>& names,
               const std::vector<std::string>& origins);
 
-    /// The request's Host: loopback, the bound address or one of the names, with any port.
+    /// The request's Host: loopback, the bound address (of 0.0.0.0 and :: those of addresses_of()) or one of
+    /// the names, with any port.
     bool allows_host(std::string_view host) const;
     /// The request's Origin: the request's own host, which is allowed, or one of the origins. None ("") is
     /// what programs send that are no browser.
@@ -29,6 +30,10 @@ class HostRules {
   private:
     std::vector<std::string> names_, origins_;
 };
+
+/// The addresses that a server listens on: those of this machine's interfaces for 0.0.0.0 and ::, without
+/// loopback, else the one.
+std::vector<std::string> addresses_of(const std::string& bind);
 
 /// Whether an address is this machine's alone: 127.0.0.0/8, ::1, localhost.
 bool is_loopback(std::string_view name);

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/remote/hosts.h"
 #include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/network.h"
 #include "easypbr/remote/served_files.h"
@@ -53,7 +54,8 @@ std::unique_ptr<ServedFiles> served_files(const ServeOptions& options) {
 void warn_of_strangers(const ServeOptions& options) {
     if (options.socket.empty() && !is_loopback(options.bind))
         log_warning(fmt::format(
-            "the address {} is seen by the network, and nothing is encrypted: ssh -L needs no such address",
+            "the address {} is seen by the network, and nothing is encrypted: ssh -L needs no such address. "
+            "It is answered to by its addresses; other names of this machine need --host-name (host_names)",
             options.bind));
 }
 
@@ -74,12 +76,18 @@ struct Server::Parts {
         network.start(clients);
     }
 
+    bool is_bound_to_all() const {
+        return options.socket.empty() && (options.bind == "0.0.0.0" || options.bind == "::");
+    }
+
     std::string url(const std::string& token) const {
-        const bool is_v6 = options.bind.find(':') != std::string::npos;
         std::string host = options.socket.empty() ? options.bind : "localhost";
-        if (options.socket.empty() && is_v6) host = "[" + host + "]";
-        if (options.socket.empty() && (options.bind == "0.0.0.0" || options.bind == "::"))
-            host = options.host_names.empty() ? "localhost" : options.host_names.front();
+        if (is_bound_to_all()) host = options.host_names.empty() ? "localhost" : options.host_names.front();
+        return url(host, token);
+    }
+
+    std::string url(std::string host, const std::string& token) const {
+        if (host.find(':') != std::string::npos) host = "[" + host + "]";
         const int port = options.socket.empty() ? network.port() : socket_port;
         return fmt::format("http://{}:{}/#token={}", host, port, token);
     }
@@ -115,6 +123,14 @@ std::string Server::url() const {
 
 std::string Server::watch_url() const {
     return parts_->url(parts_->tokens.watch);
+}
+
+std::vector<std::string> Server::urls() const {
+    std::vector<std::string> urls = {url()};
+    if (parts_->is_bound_to_all())
+        for (const std::string& address : addresses_of(parts_->options.bind))
+            urls.push_back(parts_->url(address, parts_->tokens.control));
+    return urls;
 }
 
 std::string Server::forward_command(const std::string& host) const {
