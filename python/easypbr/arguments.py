@@ -19,3 +19,11 @@ def samples_of(samples: Any) -> int | None:
     if isinstance(samples, bool) or not field.min <= number <= field.max:
         raise ArgumentError(f"samples: expected a whole number from {field.min:g} to {field.max:g}, got {samples!r}")
     return number
+
+
+def real_of(name: str, value: Any, what: str = "a number") -> float:
+    """A real number, which the library checks further; `what` is expected of it."""
+    try:
+        return float(value + 0)  # float() alone takes text.
+    except TypeError:
+        raise ArgumentError(f"{name}: expected {what}, got {value!r}") from None

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
-from .arguments import samples_of
+from .arguments import real_of, samples_of
 from .cameras import set_camera
 from .conversions.maker import Maker
 from .errors import ArgumentError
@@ -131,7 +131,7 @@ class Viewer(Sharing):
 
     @time.setter
     def time(self, seconds: float) -> None:
-        self._handle.time = seconds
+        self._handle.time = real_of("time", seconds, "seconds")
 
     @property
     def elapsed(self) -> float:
@@ -156,7 +156,8 @@ class Viewer(Sharing):
     def play(self, animations: "_easypbr.Animations | None" = None, animation: str | int = 0, speed: float = 1.0, loop: bool = True) -> None:
         """Plays an animation of a file, by its name or number, from its start: view.play(load_scene(path).animations). It
         follows view.time: that of the window, or of the frames that are recorded. Without arguments it goes on after
-        pause(). `speed`: below 0 backwards."""
+        pause(), or from its start when it is at its end. `speed`: below 0 backwards."""
+        speed = real_of("speed", speed)
         if animations is None:
             self._handle.resume(speed, loop)
         else:
@@ -168,7 +169,7 @@ class Viewer(Sharing):
 
     @property
     def is_playing(self) -> bool:
-        """Whether an animation plays."""
+        """Whether an animation plays: it is neither paused nor, with `loop=False`, at its end."""
         return self._handle.is_playing()
 
     @property
@@ -178,7 +179,7 @@ class Viewer(Sharing):
 
     @animation_time.setter
     def animation_time(self, seconds: float) -> None:
-        self._handle.animation_time = seconds
+        self._handle.animation_time = real_of("animation_time", seconds, "seconds")
 
     def turntable(self, duration_s: float = 4.0) -> "_easypbr.CameraPath":
         """A path of one turn around the content from the current camera; an automatic camera is far enough away to keep

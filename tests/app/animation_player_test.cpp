@@ -96,8 +96,14 @@ TEST_F(Player, SpeedAndLoop) {
     clock_.tick();
     EXPECT_NEAR(x(), 0.75, 1e-12);  // -0.5 + 2 s
     player_.set_loop(false);
+    EXPECT_TRUE(player_.is_playing());
     for (int i = 0; i < 4; ++i) clock_.tick();
     EXPECT_NEAR(x(), 2, 1e-12);
+    EXPECT_FALSE(player_.is_playing()) << "it rests at its end";
+    player_.resume();
+    EXPECT_TRUE(player_.is_playing());
+    clock_.tick();
+    EXPECT_NEAR(x(), 1, 1e-12);  // 0.5 s at four times the speed, from the start
 }
 
 TEST_F(Player, TellsHowThingsMoved) {

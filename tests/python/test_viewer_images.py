@@ -78,6 +78,13 @@ def test_what_is_no_image_is_refused(view, name, image, options):
     assert view.image_names() == []
 
 
+def test_what_is_no_number_is_told_by_its_name(view):
+    for set_it, name in ((lambda: setattr(view, "time", "a"), "time"), (lambda: setattr(view, "animation_time", None), "animation_time"),
+                         (lambda: view.play(speed="x"), "speed")):
+        with pytest.raises(easypbr.ArgumentError, match=f"^{name}: expected "):
+            set_it()
+
+
 @pytest.mark.parametrize("options", [
     {"scale": 0}, {"scale": -1}, {"scale": float("nan")}, {"scale": 1e-3}, {"scale": 5}, {"size": (0, 5)}, {"size": (-3, 5)},
 ])

@@ -54,10 +54,12 @@ class AnimationPlayer {
     void play(size_t number);
     /// By the file's name and the animation's name or number. Throws NameError with the nearest name.
     void play(const std::string& file, const std::string& animation);
-    /// Goes on from where it was. Throws ArgumentError when no animation is known.
+    /// Goes on from where it was; from its start when it is at its end, without a loop. Throws ArgumentError
+    /// when no animation is known.
     void resume();
     void pause();
-    bool is_playing() const { return playing_; }
+    /// Neither paused nor, without a loop, at its end.
+    bool is_playing() const { return playing_ && !has_ended(); }
 
     /// Seconds of the animation, not yet wound around.
     double time() const;
@@ -84,6 +86,7 @@ class AnimationPlayer {
         size_t file, index;
     };
     void apply();
+    bool has_ended() const;
     void rebuild_names();
 
     const Clock& clock_;

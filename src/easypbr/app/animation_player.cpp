@@ -117,8 +117,13 @@ void AnimationPlayer::play(const std::string& file, const std::string& animation
 
 void AnimationPlayer::resume() {
     if (empty()) throw ArgumentError("there is no animation to play: give play() those of load_scene()");
+    base_ = has_ended() ? (speed_ < 0 ? duration_s() : 0) : time();
     clock_base_ = clock_.time();
     playing_ = true;
+}
+
+bool AnimationPlayer::has_ended() const {
+    return !empty() && !loop_ && (speed_ < 0 ? time() <= 0 : time() >= duration_s());
 }
 
 void AnimationPlayer::pause() {
