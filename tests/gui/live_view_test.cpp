@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "easypbr/app/camera_text.h"
@@ -303,6 +304,17 @@ TEST_F(Live, ThePanelsTakeTheirOwnClicks) {
     step({key('H')});
     settle();
     EXPECT_FALSE(std::ranges::equal(with.bytes(), view_.screen().bytes()));
+}
+
+TEST_F(Live, PanelsOfANarrowWindowDoNotOverlap) {
+    view_.state().panels.shown = true;
+    for (const int width : {900, 640, 600, 300, 120}) {
+        for (int i = 0; i < 4; ++i) view_.update({}, {width, 900}, 1, 0.02);
+        const auto scene = view_.places().at("Scene"), effects = view_.places().at("Effects");
+        EXPECT_FALSE(scene.intersects(effects)) << width;
+        EXPECT_LE(std::max(scene.max().x(), effects.max().x()), width);
+        EXPECT_EQ(scene.min().x() == effects.min().x(), width <= 600) << width;
+    }
 }
 
 TEST_F(Live, NewDataUnderTheSameNameKeepLookAndCamera) {

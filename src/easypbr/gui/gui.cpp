@@ -66,6 +66,19 @@ void draw_column(GuiState& state, const Column& column, float x, float top, floa
     ImGui::End();
 }
 
+/// On both sides, or below each other where the window is too narrow for that.
+void draw_columns(GuiState& state) {
+    const float top = ImGui::GetFrameHeight(), window = float(state.screen.size.x());
+    const float on_left = left_width * state.screen.scale, on_right = right_width * state.screen.scale;
+    if (on_left + on_right <= window) {
+        draw_column(state, left, 0, top, on_left);
+        return draw_column(state, right, window - on_right, top, on_right);
+    }
+    Column both = left;
+    both.panels.insert(both.panels.end(), right.panels.begin(), right.panels.end());
+    draw_column(state, both, 0, top, std::min(std::max(on_left, on_right), window));
+}
+
 /// Over all of the window; a recording's frame as large as fits, with bars beside it.
 void show_picture(const GuiState& state, const gl::Texture& picture) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
@@ -237,10 +250,7 @@ void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
     state.manipulator.has_pointer = state.panels.shown && manipulate(state);
     if (state.panels.shown) {
         menu_bar(state);
-        const float top = ImGui::GetFrameHeight();
-        draw_column(state, left, 0, top, left_width * state.screen.scale);
-        const float width = right_width * state.screen.scale;
-        draw_column(state, right, float(state.screen.size.x()) - width, top, width);
+        draw_columns(state);
         status_line(state);
     }
     if (more) more();

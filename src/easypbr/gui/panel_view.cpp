@@ -102,8 +102,11 @@ void menu_bar(GuiState& state) {
     const app::LiveStatistics& now = state.live.picture().statistics();
     const std::string text = fmt::format("{} x {}   {:.0f} ms   {} / {}", now.size.x(), now.size.y(),
                                          now.frame_seconds * 1e3, now.frames, now.total);
-    ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(text.c_str()).x - 24 * state.screen.scale);
-    dim_text(text);
+    const float x = ImGui::GetWindowWidth() - ImGui::CalcTextSize(text.c_str()).x - 24 * state.screen.scale;
+    if (x > ImGui::GetCursorPosX()) {
+        ImGui::SameLine(x);
+        dim_text(text);
+    }
     ImGui::EndMainMenuBar();
 }
 
