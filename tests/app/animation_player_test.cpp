@@ -18,7 +18,8 @@ class Player : public testing::Test {
         AnimationNode node;
         node.mesh = box_;
         Animation rest = slide("rest");
-        rest.channels[0].values.setZero();
+        ArrayXf& values = rest.channels[0].values;
+        values = ArrayXf::Dense::Zero(values.rows(), values.cols());
         animations_ = Animations({{node}, {}, {}, {slide("slide"), rest}});
     }
     double x() const { return box_.T_parent_mesh().translation().x(); }

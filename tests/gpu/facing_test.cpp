@@ -23,7 +23,9 @@ TEST(Facing, ClosedOutward) {
 }
 
 TEST(Facing, Inward) {
-    EXPECT_FALSE(is_closed_outward(points(corners), faces(outward.rowwise().reverse())));
+    const Array3i inward = faces(outward.rowwise().reverse());
+    EXPECT_FALSE(is_closed_outward(points(corners), inward));
+    EXPECT_EQ(winding_of(points(corners), inward), Winding::inward);
 }
 
 TEST(Facing, Open) {
@@ -42,7 +44,7 @@ TEST(Facing, EveryComponentCounts) {
     V << corners, (corners * 0.1f).rowwise() + Eigen::RowVector3f(5, 0, 0);
     Eigen::MatrixXi F(8, 3);
     F << outward, (outward.rowwise().reverse().array() + 4).matrix();
-    EXPECT_FALSE(is_closed_outward(points(V), faces(F)));
+    EXPECT_EQ(winding_of(points(V), faces(F)), Winding::unknown);
     F << outward, (outward.array() + 4).matrix();
     EXPECT_TRUE(is_closed_outward(points(V), faces(F)));
 }

@@ -151,6 +151,39 @@ TEST(Transmission, VolumesAbsorbAlongTheRefractedPath) {
     });
 }
 
+// Whichever way its faces look, and whether or not it has normals: the front of a closed volume is its
+// outside. 0.02, as above: interpolated normals of both are the same, but for their roundings.
+TEST(Transmission, WindingOfVolumesDoesNotMatter) {
+    const auto drawn = [](bool inward, bool with_normals, bool native) {
+        MeshData data = *make_sphere(1, 256).snapshot();
+        data.materials = {glass([](Material& m) {
+            m.thickness = 1;
+            m.attenuation_color = Vec3(0.25f, 0.5f, 1);
+            m.attenuation_distance = 2;
+        })};
+        if (inward) data.F = Array3i(Array3i::Dense(data.F.rowwise().reverse()));
+        if (!with_normals) data.N = {};
+        Scene scene;
+        scene.show(Mesh(data), "ball");
+        scene.set_environment(constant_environment(1));
+        app::Session session = session_of(scene);
+        session.settings().environment.enabled = true;
+        session.allow_native_geometry(native);
+        return std::pair(render_linear(session), session.camera());
+    };
+    for (const bool with_normals : {true, false})
+        for (const bool native : {true, false}) {
+            const auto [outward, camera] = drawn(false, with_normals, native);
+            const Image inward = drawn(true, with_normals, native).first;
+            size_t same = 0;
+            for (size_t i = 0; i < outward.pixels<float>().size(); ++i)
+                same += std::abs(outward.pixels<float>()[i] - inward.pixels<float>()[i]) < 0.02f;
+            // But for pixels of the silhouette.
+            EXPECT_GT(same, outward.pixels<float>().size() * 98 / 100) << with_normals << native;
+            EXPECT_LT(inward.at<float>(size / 2, size / 2)[0], 0.4f) << with_normals << native;
+        }
+}
+
 // A thin wall has one colour, whatever the angle (base colour times 1 - F), and does not bend rays.
 TEST(Transmission, ThinSurfacesTintWhatIsBehind) {
     Scene scene;

@@ -11,20 +11,23 @@ namespace easypbr::gpu {
 
 class ClosedMeshes {
   public:
-    /// Takes note that a mesh is drawn and returns whether it is known to be closed and wound outward. That
-    /// is found out when it is drawn for the second time, unless it is small: it takes passes over all faces,
-    /// which a single picture would not earn back.
-    bool draw(const MeshData& mesh) {
+    /// Takes note that a mesh is drawn and returns what is known of its winding. That is found out when it is
+    /// drawn for the second time, unless it is small or `needed`: it takes passes over all faces, which a
+    /// single picture would not earn back.
+    Winding draw(const MeshData& mesh, bool needed) {
         Entry& entry = entries_.get(key_of(mesh), [] { return Entry(); });
-        const int draws_before = mesh.F.rows() <= small_mesh ? 0 : 1;
-        if (entry.draws++ == draws_before) entry.closed_outward = is_closed_outward(mesh.V, mesh.F);
-        return entry.closed_outward;
+        const int draws_before = needed || mesh.F.rows() <= small_mesh ? 0 : 1;
+        if (entry.draws++ >= draws_before && !entry.is_known) {
+            entry.winding = winding_of(mesh.V, mesh.F);
+            entry.is_known = true;
+        }
+        return entry.winding;
     }
 
-    /// The same of a mesh that is not noted.
+    /// Whether a mesh is known to be closed and wound outward; it is not noted.
     bool is_known(const MeshData& mesh) const {
         const Entry* const entry = entries_.find(key_of(mesh));
-        return entry && entry->closed_outward;
+        return entry && entry->winding == Winding::outward;
     }
 
     /// Drops what was not drawn since the last call.
@@ -35,7 +38,8 @@ class ClosedMeshes {
     static constexpr Eigen::Index small_mesh = 1 << 14;
     struct Entry {
         int draws = 0;
-        bool closed_outward = false;
+        bool is_known = false;
+        Winding winding = Winding::unknown;
     };
     using Key = std::pair<uint64_t, uint64_t>;
     static Key key_of(const MeshData& mesh) { return {mesh.V.revision(), mesh.F.revision()}; }

@@ -155,8 +155,8 @@ std::vector<Volume> volumes_in(const Array3f& V, const Array3i& F, const std::ve
 
 }  // namespace
 
-bool is_closed_outward(const Array3f& V, const Array3i& F) {
-    if (F.rows() == 0) return false;
+Winding winding_of(const Array3f& V, const Array3i& F) {
+    if (F.rows() == 0) return Winding::unknown;
     std::vector<int32_t> parent;
     if (has_no_boundary(F, [](int32_t v) { return uint64_t(v); })) {
         parent.resize(size_t(V.rows()));
@@ -164,7 +164,7 @@ bool is_closed_outward(const Array3f& V, const Array3i& F) {
     } else if (has_no_boundary(F, [&](int32_t v) { return place_key(V, v); }))
         parent = first_at_place(V);  // Creases and seams have several vertices at one place.
     else
-        return false;
+        return Winding::unknown;
     JoinedSets components(std::move(parent));
     parallel_chunks(size_t(F.rows()), face_grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
@@ -182,7 +182,10 @@ bool is_closed_outward(const Array3f& V, const Array3i& F) {
     std::unordered_map<int32_t, double> volumes;
     for (const auto& chunk : chunks)
         for (const Volume& volume : chunk) volumes[volume.root] += volume.value;
-    return std::ranges::all_of(volumes, [](const auto& volume) { return volume.second > 0; });
+    const auto all_of_sign = [&](double sign) {
+        return std::ranges::all_of(volumes, [&](const auto& volume) { return sign * volume.second > 0; });
+    };
+    return all_of_sign(1) ? Winding::outward : all_of_sign(-1) ? Winding::inward : Winding::unknown;
 }
 
 bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3i& F) {

@@ -7,11 +7,21 @@
 
 namespace easypbr::gpu {
 
-/// True when every connected component is closed and its faces look outward: then back faces are never seen
-/// from outside, and leaving them out changes no picture. Vertices at one place count as one, so that creases
-/// and seams of texture coordinates do not open a mesh. Constant memory per vertex, two passes over the faces
-/// for an open mesh.
-bool is_closed_outward(const Array3f& V, const Array3i& F);
+/// Which way the faces of a mesh look.
+enum class Winding {
+    unknown,  ///< it is open, or components of it look different ways
+    outward,  ///< every connected component is closed and its faces look outward
+    inward    ///< the same the other way round
+};
+
+/// Vertices at one place count as one, so that creases and seams of texture coordinates do not open a mesh.
+/// Constant memory per vertex, two passes over the faces for an open mesh.
+Winding winding_of(const Array3f& V, const Array3i& F);
+
+/// Back faces are never seen from outside then, and leaving them out changes no picture.
+inline bool is_closed_outward(const Array3f& V, const Array3i& F) {
+    return winding_of(V, F) == Winding::outward;
+}
 
 /// True when every given vertex normal is on the same side as the winding of the faces around it.
 bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3i& F);

@@ -85,8 +85,8 @@ MeshBuffers make_mesh_buffers(const MeshData& mesh, bool with_tangents) {
     MeshBuffers buffers;
     const Array3f N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
     buffers.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, N, mesh.F);
-    buffers.closed_outward = gpu::is_closed_outward(mesh.V, mesh.F);
-    if (buffers.closed_outward) buffers.box = gpu::box_of(mesh.V);
+    buffers.winding = gpu::winding_of(mesh.V, mesh.F);
+    if (buffers.winding == gpu::Winding::outward) buffers.box = gpu::box_of(mesh.V);
     SplitMesh split;
     if (with_tangents) {
         split = split_by_tangent(mesh.V, N, mesh.UV, mesh.F);

@@ -21,9 +21,9 @@ struct MeshBuffers {
     gl::Buffer tangents;   ///< 4 x 16 bits; absent unless asked for
     gl::Buffer indices;    ///< 3 per face, 32 bits
     gl::VertexArray array;
-    bool closed_outward = false;  ///< from outside, back faces need not be drawn
-    Box3d box;                    ///< of the vertices, when it is closed
-    bool normals_agree = true;    ///< the winding tells the normals' side
+    gpu::Winding winding = gpu::Winding::unknown;
+    Box3d box;                  ///< of the vertices, when it is closed outward
+    bool normals_agree = true;  ///< the winding tells the normals' side
 };
 
 /// Buffers by the revisions of the arrays they were made from.

@@ -16,7 +16,7 @@ bool is_one_sided(const Frame& frame, const DrawItem& item, const MeshBuffers& b
     // Of a volume the back is a part of what happens behind the front.
     if (item.is_volume()) return true;
     const bool opaque = item.alpha == AlphaMode::opaque && !m.transmits();
-    return !item.two_sided || (buffers.closed_outward && opaque && !item.style.flat &&
+    return !item.two_sided || (buffers.winding == gpu::Winding::outward && opaque && !item.style.flat &&
                                gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, buffers.box));
 }
 
@@ -92,8 +92,11 @@ void MeshPass::draw_item(const Frame& frame, const DrawItem& item, const MeshBuf
     if (outputs.peel) set_peel_uniforms(program, *outputs.peel, free_unit);
 
     gl::DrawState state = geometry_state(outputs);
+    // The front of a volume is its outside, whatever its winding.
+    const bool turned = item.is_volume() && buffers.winding == gpu::Winding::inward,
+               backs = outputs.peel && outputs.peel->backs;
     if (is_one_sided(frame, item, buffers))
-        state.culling = outputs.peel && outputs.peel->backs ? gl::Culling::front : gl::Culling::back;
+        state.culling = backs != turned ? gl::Culling::front : gl::Culling::back;
     state.clockwise_fronts = mirrored;
     gl::draw_triangles(state, buffers.array, int64_t(item.part.first_face) * 3, item.part.face_count * 3);
 }

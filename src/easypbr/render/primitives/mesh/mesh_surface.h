@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "easypbr/gpu/facing.h"
 #include "easypbr/render/primitives/hit_surface.h"
 #include "easypbr/render/raster/visible_surfaces.h"
 
@@ -11,9 +12,9 @@ namespace easypbr::render {
 /// What is known of a mesh beyond its data.
 struct MeshFacts {
     Array3f N;
-    bool normals_agree = true;    ///< the winding tells the normals' side
-    bool closed_outward = false;  ///< from outside, back faces need not be drawn
-    Box3d box;                    ///< of the vertices, when it is closed or small; else empty
+    bool normals_agree = true;  ///< the winding tells the normals' side
+    gpu::Winding winding = gpu::Winding::unknown;
+    Box3d box;  ///< of the vertices, when it is closed or small; else empty
 };
 
 /// What shaders read of an item's triangles, whatever sees them.

@@ -27,9 +27,11 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
     const bool hides = item.alpha == AlphaMode::opaque && !item.material.transmits();
     // Of a volume the back is a part of what happens behind the front.
     const bool both_sides = item.two_sided && !item.is_volume() &&
-                            (!hides || item.style.flat || !known.closed_outward ||
+                            (!hides || item.style.flat || known.winding != gpu::Winding::outward ||
                              !gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, known.box));
-    const bool mirrored = item.object->T_world_mesh.linear().determinant() < 0;
+    // The front of a volume is its outside, whatever its winding.
+    const bool turned = item.is_volume() && known.winding == gpu::Winding::inward;
+    const bool mirrored = (item.object->T_world_mesh.linear().determinant() < 0) != turned;
     return {mesh.V,
             mesh.F,
             item.part.first_face,
@@ -96,7 +98,8 @@ bool NativeMeshes::draws_layers(DrawItems items) {
     return faces < int64_t(UINT32_MAX);
 }
 
-const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
+const MeshFacts& NativeMeshes::facts_of(const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
     MeshFacts& known = facts_.get({mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}, [&] {
         MeshFacts made;
         made.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
@@ -104,8 +107,8 @@ const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
         made.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, made.N, mesh.F);
         return made;
     });
-    known.closed_outward = closed_.draw(mesh);
-    if (known.closed_outward && known.box.isEmpty()) known.box = gpu::box_of(mesh.V);
+    known.winding = closed_.draw(mesh, item.is_volume());
+    if (known.winding == gpu::Winding::outward && known.box.isEmpty()) known.box = gpu::box_of(mesh.V);
     return known;
 }
 
@@ -140,7 +143,7 @@ ShaderInputs NativeMeshes::inputs_of(const MaterialContext& context, const DrawI
 
 std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& resolved,
                                                       const DrawItem& item) {
-    const MeshFacts& known = facts_of(item.mesh());
+    const MeshFacts& known = facts_of(item);
     // Without a shader of its own, which is for pixels.
     DrawItem plain = item;
     plain.material.shader = {};
@@ -185,7 +188,7 @@ bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet e
         if (!surfaces.has_room(item.part.face_count)) return false;
         if (item.alpha == AlphaMode::blend && !(item.material.opacity > 0)) continue;
         if (backs && !item.is_volume()) continue;
-        const MeshFacts& known = facts_of(item.mesh());
+        const MeshFacts& known = facts_of(item);
         const Mat4d clip_from_mesh = clip_from(frame, item);
         std::unique_ptr<MeshSurface> made = surface_of(frame, item, extensions, known, clip_from_mesh);
         const MeshSurface* const surface = made.get();
@@ -221,8 +224,8 @@ bool NativeMeshes::cover(const Frame& frame, DrawItems items, std::span<uint8_t>
     raster.set_area(frame.size, frame.whole());
     return std::ranges::all_of(items, [&](const DrawItem& item) {
         if (item.alpha != AlphaMode::opaque || item.material.shader) return false;
-        return render::cover(
-            raster, triangles_of(frame, item, facts_of(item.mesh()), clip_from(frame, item), false), covered);
+        return render::cover(raster, triangles_of(frame, item, facts_of(item), clip_from(frame, item), false),
+                             covered);
     });
 }
 

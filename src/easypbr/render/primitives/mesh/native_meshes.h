@@ -42,7 +42,7 @@ class NativeMeshes {
     void evict_unused();
 
   private:
-    const MeshFacts& facts_of(const MeshData& mesh);
+    const MeshFacts& facts_of(const DrawItem& item);
     /// What mesh_resolve reads, and with extensions mesh_extended.
     ShaderInputs inputs_of(const MaterialContext& context, const DrawItem& item, const MeshFacts& known);
     native::TriangleAttributes attributes_of(const DrawItem& item, const MeshFacts& known);
