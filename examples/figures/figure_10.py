@@ -72,7 +72,7 @@ def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     view.camera = Camera.look_at((3.3, 3.4, 5.4), (-0.4, 0.3, 0), fov_y_deg=34)
     view.camera_path = path_around(2.1)
     view.show_panels("Scene", "Camera path", "Recorder")
-    return view.screenshot(scale=scale)[:, :, :3]
+    return view.screenshot(scale=max(scale, 0.5))[:, :, :3]
 
 
 if __name__ == "__main__":
