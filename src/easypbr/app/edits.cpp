@@ -46,8 +46,8 @@ std::optional<Mesh> node_named(const Scene& scene, const std::string& name) {
             for (const Mesh& child : node.snapshot()->children) {
                 const std::string child_path = path + "/" + child.name();
                 if (name != child_path && !name.starts_with(child_path + "/")) continue;
-                Mesh next = child;
-                node = std::move(next);
+                const Mesh next = child;  // `child` ends with the node's data
+                node = next;
                 path = child_path;
                 found = true;
                 break;

@@ -40,7 +40,7 @@ struct Session::Refined {
     }
 };
 
-Session::Session(Scene scene) : scene_(std::move(scene)), settings_(std::make_unique<Settings>()) {}
+Session::Session(const Scene& scene) : scene_(scene), settings_(std::make_unique<Settings>()) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;

@@ -50,7 +50,7 @@ void check_picture_size(Vec2i size);
 /// drawn again: see KeptDevice.
 class Session {
   public:
-    explicit Session(Scene scene = {});
+    explicit Session(const Scene& scene = {});
     ~Session();
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
