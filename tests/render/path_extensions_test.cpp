@@ -294,7 +294,8 @@ TEST(PathExtensions, SlabAbsorbs) {
 }
 
 // Of balls within each other, each a quarter smaller, which do not bend light: each shell absorbs its own
-// part of the way, and the innermost ball that of its diameter. 0.004: the noise of 20736 paths, 4 deviations.
+// part of the way, and the innermost ball that of its diameter. 0.004: the noise of 20736 paths, 4
+// deviations.
 TEST(PathExtensions, NestedVolumesAbsorbInTurn) {
     Scene scene;
     const Vec3 colors[] = {Vec3(0.9f, 0.8f, 1), Vec3(0.6f, 1, 0.9f), Vec3(1, 0.7f, 0.8f),

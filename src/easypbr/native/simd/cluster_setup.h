@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/native/kernels.h"
+#include "easypbr/native/simd/reductions.h"
 #include "easypbr/native/simd/texels.h"
 
 namespace easypbr::native::EASYPBR_ISA {

@@ -1,6 +1,7 @@
 // GLSL's texture functions for pictures in host memory: nearest, linear, trilinear, cubes.
 #pragma once
 
+#include "easypbr/native/simd/reductions.h"
 #include "easypbr/native/simd/texels.h"
 
 namespace easypbr::native::EASYPBR_ISA {
@@ -359,8 +360,9 @@ INLINE vec4 textureGather(const Layers& s, const vec3& place) {
             layer_texel(s, x + 1, y, layer), layer_texel(s, x, y, layer)};
 }
 
-/// See shaders/common_lanes.glsl. Where all lanes look at one layer, of the blocks that their places and a
-/// texel more lie in: bounds that do not depend on which lanes are shaded together are no more than that.
+/// See shaders/common_lanes.glsl. Of the blocks around all places that need them, and a texel to each side,
+/// where all look at one layer; wide elsewhere. They differ with the lanes that are shaded together: what is
+/// computed with them must not.
 INLINE vec2 layer_bounds(const Layers& s, const vec3& place, const vec2& distance, vbool needed) {
     const vec2 unknown(-1e38f, 1e38f);
     const float size = float(s.size);

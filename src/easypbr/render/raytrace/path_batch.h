@@ -186,10 +186,10 @@ struct PathBatch {
 
     size_t count = 0;
     PathVectors<3> position;
-    PathVectors<3> start;   ///< of rays that leave on the side that the path comes from: see find_starts()
-    PathVectors<3> normal;  ///< interpolated and mapped
-    PathVectors<3> face;    ///< of the element itself, towards where the path comes from
-    PathVectors<3> view;    ///< unit, back along the path
+    PathVectors<3> start;      ///< of rays that leave on the side that the path comes from: see find_starts()
+    PathVectors<3> normal;     ///< interpolated and mapped
+    PathVectors<3> face;       ///< of the element itself, towards where the path comes from
+    PathVectors<3> view;       ///< unit, back along the path
     std::vector<float> reach;  ///< RayScene::reach() of the surfaces
     PathVectors<3> albedo;
     PathVectors<2> parameters;  ///< metallic, roughness

@@ -152,7 +152,8 @@ struct PathPass::Block {
         blue[i] = color[2];
     }
     void add(const Block& from, size_t i) {
-        for (auto numbers : {&Block::normal, &Block::material, &Block::red_green, &Block::blue, &Block::index})
+        for (auto numbers :
+             {&Block::normal, &Block::material, &Block::red_green, &Block::blue, &Block::index})
             (this->*numbers)[count] = (from.*numbers)[i];
         x[count] = from.x[i];
         y[count] = from.y[i];
@@ -172,10 +173,10 @@ struct PathPass::Block {
         to.footprint = places.footprint.data();
         batch.albedo.written_by(to.albedo);
         batch.parameters.written_by(to.parameters);
-        native::find_places(pixels.rays,
-                            {x.data(), y.data(), depth.data(), normal.data(), material.data(),
-                             red_green.data(), blue.data()},
-                            int(count), to);
+        native::find_places(
+            pixels.rays,
+            {x.data(), y.data(), depth.data(), normal.data(), material.data(), red_green.data(), blue.data()},
+            int(count), to);
     }
     /// Starts the paths of a batch at what is seen.
     void start(const Pixels& pixels, RayScene::Places& seen, PathBatch& batch) const {

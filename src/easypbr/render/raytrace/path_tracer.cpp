@@ -401,8 +401,8 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
 Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
     const RayHit& hit = at.hit;
     const Vec3 up = cosine_direction(RayFrame(hit.normal), u);
-    const bool open =
-        !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up, std::numeric_limits<float>::infinity());
+    const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up,
+                                       std::numeric_limits<float>::infinity());
     return open ? sky_.seen(at.direction, at.density).radiance : Vec3(Vec3::Zero());
 }
 

@@ -129,8 +129,8 @@ class RayScene {
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;
-        Vec3 face;    ///< normal of the element itself: the interpolated one lies above it or below
-        Vec3 normal;  ///< the interpolated one, but for a surface that stands before the place
+        Vec3 face;        ///< normal of the element itself: the interpolated one lies above it or below
+        Vec3 normal;      ///< the interpolated one, but for a surface that stands before the place
         float reach = 0;  ///< of the surface; the largest one where it is not found
     };
     /// A pixel's surface as the rasteriser has it.

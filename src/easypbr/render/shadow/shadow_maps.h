@@ -134,7 +134,7 @@ class ShadowMaps {
     bool in_host_memory_ = false;
     gl::Texture maps_;
     std::vector<float> host_maps_;
-    std::vector<float> least_, largest_;  ///< of the blocks of host_maps_
+    std::vector<float> least_, largest_;                ///< of the blocks of host_maps_
     std::vector<float> host_absorption_, host_moment_;  ///< tints_ in host memory
     ShadowTints tints_;                                 ///< beside the maps while some casters weaken light
     std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
