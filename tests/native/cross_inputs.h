@@ -3,6 +3,7 @@
 // same bits.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
