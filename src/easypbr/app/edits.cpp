@@ -43,11 +43,11 @@ std::optional<Mesh> node_named(const Scene& scene, const std::string& name) {
         std::string path = root;
         for (bool found = true; found && path != name;) {
             found = false;
-            for (const Mesh& child : node.snapshot()->children) {
+            const auto data = node.snapshot();  // keeps the children
+            for (const Mesh& child : data->children) {
                 const std::string child_path = path + "/" + child.name();
                 if (name != child_path && !name.starts_with(child_path + "/")) continue;
-                const Mesh next = child;  // `child` ends with the node's data
-                node = next;
+                node = child;
                 path = child_path;
                 found = true;
                 break;
