@@ -69,7 +69,7 @@ vec3 scattered_above(vec3 l, Surface s) {
     return under_layers(scattered_by_base(l, h, n_dot_l, s), l, h, n_dot_l, keep, s);
 }
 
-// Light from a direction into the view: the BRDF, or what roughness spreads of the BTDF straight through, times the cosine.
+// `light` of a direction above the face, or what roughness spreads of the BTDF straight through, times the cosine.
 vec3 above_face(vec3 light, vec3 l, Surface s) {
     vec3 below = mirrored_at_face(l);
     vec3 spread = vec3(0.0);
@@ -82,6 +82,8 @@ vec3 above_face(vec3 light, vec3 l, Surface s) {
     vec3 result = dot(l, v_face) > 0.0 ? light : spread;
     return is_inside() ? vec3(0.0) : result;
 }
+
+// Light from a direction into the view: the BRDF or the BTDF, times the cosine.
 vec3 reflected(vec3 l, Surface s) {
     return above_face(scattered_above(l, s) + scattered_above(mirrored_at_face(l), s), l, s);
 }

@@ -13,11 +13,13 @@ Surface path_surface() {
     return s;
 }
 
-// Light from a direction above the face into the view: the BRDF times the cosine.
+// `light` of a direction above the face.
 vec3 above_face(vec3 light, vec3 l, Surface s) {
     if (catches_shadows) light = vec3(max(dot(s.normal, l), 0.0) * inverse_pi);
     return dot(l, v_face) > 0.0 ? light : vec3(0.0);
 }
+
+// Light from a direction above the face into the view: the BRDF times the cosine.
 vec3 reflected(vec3 l, Surface s) { return above_face(scattered(l, s) + scattered(mirrored_at_face(l), s), l, s); }
 
 // Of a light without an area, without what is mirrored at the face: light of a single direction would show the faces where

@@ -36,15 +36,11 @@ bool is_extended_kind(float code) {
     return std::abs(code - code_of(SurfaceKind::extended)) < 0.01f;
 }
 
-/// Two parts of one object bound the same volume.
-bool is_same_volume(const RayScene& scene, int a, int b) {
-    return a == b || (a >= 0 && b >= 0 && scene.item_of(a).object == scene.item_of(b).object);
-}
-
-/// Which of a path's volumes is that of a surface; none: their number.
+/// Which of a path's volumes a surface bounds, as all parts of an object do; none: their number.
 size_t volume_of(const RayScene& scene, const PathState& state, int surface) {
+    const auto* const object = scene.item_of(surface).object;
     const auto found = std::ranges::find_if(
-        state.volumes, [&](int volume) { return is_same_volume(scene, volume, surface); });
+        state.volumes, [&](int volume) { return volume >= 0 && scene.item_of(volume).object == object; });
     return size_t(found - state.volumes.begin());
 }
 
