@@ -5,12 +5,25 @@
 
 namespace easypbr::native::EASYPBR_ISA {
 
-/// The bits of the depths that are seen at pixels.
-INLINE vint seen_at(const uint64_t* pixels, vint index) {
+/// The bits of the depths that are seen at pixels, where `asked`; any elsewhere. Each is read at once: others
+/// may write meanwhile.
+INLINE vint seen_at(const uint64_t* pixels, vint index, vbool asked) {
+    static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
+#if defined(__AVX512F__)
+    const auto* depths = reinterpret_cast<const int*>(pixels) + 1;
+    const __mmask16 mask = _mm512_test_epi32_mask(__m512i(asked.v), __m512i(asked.v));
+    return Ints(_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), mask, __m512i(index.v), depths, 8));
+#elif defined(__AVX2__)
+    const auto* depths = reinterpret_cast<const int*>(pixels) + 1;
+    return Ints(
+        _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), depths, __m256i(index.v), __m256i(asked.v), 8));
+#else
+    index = select(asked, index, vint(0));
     Ints r;
     for (int k = 0; k < lanes; ++k)
         r[k] = int32_t(__atomic_load_n(pixels + index.v[k], __ATOMIC_RELAXED) >> 32);
     return r;
+#endif
 }
 
 /// Sets the pixels of two columns and lines that splats of less than 2 pixels cover, as PointRaster::cover()
@@ -34,8 +47,7 @@ INLINE vbool set_covered(const PointBatch& b, const vec2& at, vfloat radius, vfl
         vbool is_covered = kept && is_small && x <= x1 && y <= y1 && (vbool(!b.round) || within || own) &&
                            x >= left && x < right && y >= top && y < bottom;
         if (b.seen && any_lane(is_covered))
-            is_covered = is_covered &&
-                         seen_at(b.seen, select(is_covered, (y - top) * width + x - left, vint(0))) <= bits;
+            is_covered = is_covered && seen_at(b.seen, (y - top) * width + x - left, is_covered) <= bits;
         covered |= select(is_covered, 1 << i, 0);
     }
     covered = select(is_small, covered, vint(-1));

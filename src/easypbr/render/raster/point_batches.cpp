@@ -18,22 +18,22 @@ PointBatches::Sphere sphere_around(const float* points, int count) {
     return {box.center(), box.diagonal().norm() / 2};
 }
 
-PointBatches::PointBatches(const Array3f& V)
-    : ids_(curve_order(V, size_t(V.rows()), [](size_t i) { return i; })) {
-    const auto all = size_t(V.rows());
-    points_.resize(3 * all + most);
-    spheres_.resize((all + most - 1) / most);
-    parallel_for(spheres_.size(), 64, [&](size_t batch) {
+PointBatches::PointBatches(const Array3f& V) : point_count_(size_t(V.rows())) {
+    const std::vector<uint32_t> order = curve_order(V, point_count_, [](size_t i) { return i; });
+    blocks_.resize((point_count_ + most - 1) / most);
+    spheres_.resize(blocks_.size());
+    parallel_for(blocks_.size(), 64, [&](size_t batch) {
         const int own = size_of(batch);
-        float* const to = &points_[3 * most * batch];
+        Block& to = blocks_[batch];
+        std::copy_n(&order[most * batch], own, to.ids);
         for (int i = 0; i < own; ++i)
-            for (int k = 0; k < 3; ++k) to[k * own + i] = V(ids_[most * batch + size_t(i)], k);
-        spheres_[batch] = sphere_around(to, own);
+            for (int k = 0; k < 3; ++k) to.points[k * own + i] = V(to.ids[i], k);
+        spheres_[batch] = sphere_around(to.points, own);
     });
 }
 
 int PointBatches::size_of(size_t batch) const {
-    return int(std::min(most, ids_.size() - most * batch));
+    return int(std::min(most, point_count_ - most * batch));
 }
 
 }  // namespace easypbr::render

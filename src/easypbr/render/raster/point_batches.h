@@ -20,9 +20,9 @@ class PointBatches {
     size_t count() const { return spheres_.size(); }
     int size_of(size_t batch) const;
     /// Of a batch: all x, all y, all z. Lanes beyond them can be read.
-    const float* points_of(size_t batch) const { return &points_[3 * most * batch]; }
-    /// The vertices that they are, in the same order.
-    const uint32_t* ids_of(size_t batch) const { return &ids_[most * batch]; }
+    const float* points_of(size_t batch) const { return blocks_[batch].points; }
+    /// The vertices that they are, in the same order; behind the points in memory.
+    const uint32_t* ids_of(size_t batch) const { return blocks_[batch].ids; }
     /// Around the points; infinite where one is not finite.
     struct Sphere {
         Vec3 center;
@@ -30,11 +30,20 @@ class PointBatches {
     };
     const Sphere& sphere_of(size_t batch) const { return spheres_[batch]; }
 
+    /// Bytes of a batch in memory, from its points on: a page.
+    static constexpr size_t block_size = 4096;
+
   private:
     static constexpr size_t most = native::PointBatch::most_points;
 
-    std::vector<uint32_t> ids_;
-    std::vector<float> points_;
+    struct alignas(block_size) Block {
+        float points[3 * most];
+        uint32_t ids[most];
+    };
+    static_assert(sizeof(Block) == block_size);
+
+    size_t point_count_ = 0;
+    std::vector<Block> blocks_;
     std::vector<Sphere> spheres_;
 };
 

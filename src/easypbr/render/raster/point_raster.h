@@ -84,9 +84,9 @@ class PointRaster {
             for (size_t place = 0; place < near.size(); ++place) {
                 // The next batch is somewhere else in memory.
                 if (place + 1 < near.size()) {
-                    const float* next = batches.points_of(near[place + 1]);
-                    for (size_t k = 0; k < 3 * native::PointBatch::most_points; k += 16)
-                        __builtin_prefetch(next + k);
+                    const auto* next = reinterpret_cast<const char*>(batches.points_of(near[place + 1]));
+                    for (size_t at = 0; at < PointBatches::block_size; at += 64)
+                        __builtin_prefetch(next + at);
                 }
                 const uint32_t i = near[place];
                 const PointBatches::Sphere& sphere = batches.sphere_of(i);

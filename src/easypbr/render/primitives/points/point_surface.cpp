@@ -10,14 +10,17 @@
 namespace easypbr::render {
 
 PointSurface::PointSurface(const DrawItem& item, const Frame& frame) : item_(&item) {
-    const Camera& camera = frame.camera;
-    const Eigen::Affine3d& T = item.object->T_world_mesh;
-    normal_from_mesh_ = T.linear().inverse().transpose().cast<float>();
-    world_from_mesh_ = T.linear().cast<float>();
-    const Mat3d inverse = T.linear().inverse();
-    view_position_ = (inverse * (camera.position() - T.translation())).cast<float>();
-    view_direction_ = (inverse * camera.T_world_cam.linear().col(2)).cast<float>();
-    orthographic_ = frame.orthographic();
+    normal_from_mesh_ = item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
+    const Mat3d world_from_view = frame.camera.T_world_cam.linear();
+    const Mat4d& p = frame.clip_from_view;
+    // Of all rays of a perspective camera at a distance of 1 along the axis.
+    const double wide = frame.orthographic() ? 0 : 1 / p(0, 0), high = frame.orthographic() ? 0 : 1 / p(1, 1);
+    const Vec2d step(2.0 / frame.size.x(), -2.0 / frame.size.y());
+    column_ = (-step.x() * wide * world_from_view.col(0)).cast<float>();
+    row_ = (-step.y() * high * world_from_view.col(1)).cast<float>();
+    towards_first_ = (world_from_view.col(2) - (step.x() / 2 - 1 + p(0, 2)) * wide * world_from_view.col(0) -
+                      (step.y() / 2 + 1 + p(1, 2)) * high * world_from_view.col(1))
+                         .cast<float>();
 }
 
 Vec3 PointSurface::color(uint32_t point) const {
@@ -31,37 +34,36 @@ void PointSurface::resolve(const Frame& frame, const DrawItem& item,
     for (size_t i = 0; i < pixels.size(); ++i) {
         if (i + ahead < pixels.size()) prefetch(pixels[i + ahead].face);
         const native::VisiblePixel& p = pixels[i];
-        SurfacePixel pixel = at(p.face);
+        SurfacePixel pixel;
+        pixel.albedo = linear_from_srgb(color(p.face)).cwiseProduct(item.material.base_color);
+        pixel.normal = normal(p.face, p.x, p.y);
         pixel.depth = p.depth;
         if (item.alpha == AlphaMode::blend) pixel.alpha = vertex_alpha(item, p.face);
         pixel.metallic = item.material.metallic;
         pixel.roughness = item.material.roughness;
         pixel.kind = item.kind;
         pixel.object = uint32_t(item.object - frame.scene->objects.data());
+        pixel.element = p.face;
+        pixel.is_point = true;
         writer.put(writer.index(p.x, p.y), pixel);
     }
 }
 
 void PointSurface::prefetch(uint32_t point) const {
     const MeshData& mesh = item_->mesh();
-    __builtin_prefetch(mesh.V.data() + 3 * size_t(point));
     if (item_->with_colors) __builtin_prefetch(mesh.C.data() + size_t(mesh.C.cols()) * point);
     if (!mesh.N.empty()) __builtin_prefetch(mesh.N.data() + 3 * size_t(point));
 }
 
-SurfacePixel PointSurface::at(uint32_t point) const {
+Vec3 PointSurface::normal(uint32_t point, int x, int y) const {
     const MeshData& mesh = item_->mesh();
-    SurfacePixel pixel;
-    pixel.albedo = linear_from_srgb(color(point)).cwiseProduct(item_->material.base_color);
-    pixel.element = point;
-    pixel.is_point = true;
-    const Vec3 p = mesh.V.row(point);
-    const Vec3 to_viewer = orthographic_ ? view_direction_ : Vec3(view_position_ - p);
-    Vec3 n = mesh.N.empty() ? Vec3(0, 0, 0) : Vec3(mesh.N.row(point));
-    if (n.dot(to_viewer) < 0) n = -n;
+    const Vec3 to_viewer = towards_viewer(x, y);
+    if (mesh.N.empty()) return to_viewer.normalized();
+    const Vec3 n = mesh.N.row(point);
     // A normal of no length tells nothing: the point faces the viewer.
-    pixel.normal = (n.squaredNorm() > 0 ? normal_from_mesh_ * n : world_from_mesh_ * to_viewer).normalized();
-    return pixel;
+    if (!(n.squaredNorm() > 0)) return to_viewer.normalized();
+    const Vec3 world = (normal_from_mesh_ * n).normalized();
+    return world.dot(to_viewer) < 0 ? Vec3(-world) : world;
 }
 
 uint64_t PointSurface::content(uint32_t point) const {

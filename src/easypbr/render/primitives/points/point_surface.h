@@ -18,16 +18,16 @@ class PointSurface final : public VisibleItem {
     uint64_t content(uint32_t point) const override;
 
   private:
-    /// What the point looks like from the eye; its depth is left out.
-    SurfacePixel at(uint32_t point) const;
     Vec3 color(uint32_t point) const;
     void prefetch(uint32_t point) const;
+    /// From what a pixel shows to the viewer, in world space.
+    Vec3 towards_viewer(int x, int y) const { return towards_first_ + float(x) * column_ + float(y) * row_; }
+    /// Unit, world, on the side that is seen there.
+    Vec3 normal(uint32_t point, int x, int y) const;
 
     const DrawItem* item_;
-    Mat3 normal_from_mesh_, world_from_mesh_;
-    Vec3 view_position_;   ///< of the eye, in the mesh's frame
-    Vec3 view_direction_;  ///< towards an orthographic viewer, in the mesh's frame
-    bool orthographic_;
+    Mat3 normal_from_mesh_;
+    Vec3 towards_first_, column_, row_;  ///< of the pixel in column 0 and row 0, and on to the next ones
 };
 
 }  // namespace easypbr::render
