@@ -15,6 +15,8 @@ from .panels import WindowCallbacks
 
 #: Recorders that may be recording when the program ends.
 _started: "weakref.WeakSet[Recorder]" = weakref.WeakSet()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_started.clear)  # They are the parent's.
 
 
 @atexit.register

@@ -319,7 +319,12 @@ class Viewer(Sharing):
         self.update()  # What keeps the window from opening is told here.
         self._thread = threading.Thread(target=self._live, name="easypbr window", daemon=True)
         self._thread.start()
-        atexit.register(self.close)  # A thread within the library must not outlive the interpreter.
+        # A thread within the library must not outlive the interpreter.
+        atexit.register(self._close_at_exit, os.getpid())
+
+    def _close_at_exit(self, process: int) -> None:
+        if os.getpid() == process:
+            self.close()
 
     def show_image(
         self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None

@@ -103,6 +103,55 @@ def test_a_fork_is_told_to_spawn(tmp_path):
     assert result.returncode == 0, result.stderr
 
 
+#: Threads are behind all of these: a recording's, the cluster maker's, the server's, the files' readers.
+WITH_THREADS = """
+import gc, os, signal, sys, time
+import easypbr
+from easypbr import MeshLoader, Scene, Viewer, shapes
+
+scene = Scene()
+scene.show(shapes.icosphere(1, 7), "large")
+view = Viewer((64, 48), scene=scene)
+for _ in range(2):
+    view.render(samples=1)
+view.recorder.start("frame_%03d.png")
+view.recorder.add_frame()
+server = view.serve()
+shapes.box().save("box.ply")
+meshes = iter(MeshLoader(["box.ply"] * 20, transform=lambda mesh: mesh.F.shape))
+next(meshes)
+time.sleep(0.5)
+sys.stdout.flush()
+child = os.fork()
+if child == 0:
+    signal.alarm(20)
+    if sys.argv[1] == "drop":
+        server.close()
+        del view, server, meshes
+        gc.collect()
+    elif sys.argv[1] == "use":
+        try:
+            next(meshes)
+            os._exit(3)
+        except easypbr.Error as error:
+            assert "anew" in str(error), error
+    sys.exit(0)
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+assert next(meshes) == (12, 3) and len(server.clients) == 0 and server.is_open
+view.recorder.add_frame()
+view.recorder.stop()
+assert os.path.exists("frame_001.png")
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
+@pytest.mark.parametrize("child", ["end", "drop", "use"])
+def test_a_forked_child_ends_beside_its_parent_s_threads(tmp_path, child):
+    result = run(["-c", WITH_THREADS, child], tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stderr == ""
+
+
 def test_the_command_line_can_be_interrupted(tmp_path):
     shapes.sphere(1, 16).save(tmp_path / "sphere.ply")
     # In software such a picture takes minutes.

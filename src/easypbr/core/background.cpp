@@ -47,15 +47,15 @@ class Working {
 
 }  // namespace
 
-BackgroundWork::BackgroundWork(std::function<void()> work) : work_(std::move(work)), process_(getpid()) {
+BackgroundWork::BackgroundWork(std::function<void()> work) : work_(std::move(work)) {
     if (thread_count() > 1) {
         Working& working = Working::get();
         working.add(1);
         try {
-            thread_ = std::thread([this, &working] {
+            thread_.reset(new std::thread([this, &working] {
                 run();
                 working.add(-1);
-            });
+            }));
             return;
         } catch (const std::system_error&) {
             working.add(-1);
@@ -66,12 +66,7 @@ BackgroundWork::BackgroundWork(std::function<void()> work) : work_(std::move(wor
 
 BackgroundWork::~BackgroundWork() {
     stops_ = true;
-    if (!thread_.joinable()) return;
-    // A thread stays behind in the parent when a process is forked.
-    if (process_ == getpid())
-        thread_.join();
-    else
-        thread_.detach();
+    if (thread_ && thread_.get_deleter().process.is_this()) thread_->join();
 }
 
 void BackgroundWork::run() {

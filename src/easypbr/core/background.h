@@ -1,14 +1,14 @@
 // What a thread of its own makes while the others go on.
 #pragma once
 
-#include <sys/types.h>
-
 #include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include "easypbr/core/own_process.h"
 
 namespace easypbr {
 
@@ -30,8 +30,7 @@ class BackgroundWork {
 
     std::function<void()> work_;  ///< dropped where the object is: Python's arrays may be in it
     std::atomic<bool> stops_ = false;
-    pid_t process_;
-    std::thread thread_;
+    std::unique_ptr<std::thread, DeleteInOwnProcess> thread_;
 };
 
 /// A value that background work makes.

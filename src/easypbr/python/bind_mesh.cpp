@@ -4,8 +4,13 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/own_process.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_queue.h"
@@ -17,6 +22,24 @@
 
 namespace easypbr::python {
 namespace {
+
+/// A queue of meshes, for the process that made it.
+class OwnQueue {
+  public:
+    OwnQueue(std::vector<fs::path> paths, int workers, int prefetch)
+        : queue_(new io::MeshQueue(std::move(paths), workers, prefetch)) {}
+    /// Throws Error in a forked child.
+    io::MeshQueue& get() const {
+        if (!queue_.get_deleter().process.is_this())
+            throw Error(
+                "the files are read ahead in the process that this one was forked from: iterate over the "
+                "MeshLoader anew");
+        return *queue_;
+    }
+
+  private:
+    std::unique_ptr<io::MeshQueue, DeleteInOwnProcess> queue_;
+};
 
 /// One of a mesh's arrays: how Python reads it and writes it.
 struct MeshArray {
@@ -331,11 +354,11 @@ void bind_mesh(nb::module_& module) {
         });
     // Equal handles would need equal hashes; a mesh is no key.
     mesh.attr("__hash__") = nb::none();
-    nb::class_<io::MeshQueue>(module, "MeshQueue")
+    nb::class_<OwnQueue>(module, "MeshQueue")
         .def(nb::init<std::vector<fs::path>, int, int>(), nb::arg("paths"), nb::arg("workers"),
              nb::arg("prefetch"))
-        .def("next", [](io::MeshQueue& queue) { return released([&] { return queue.next(); }); })
-        .def("__len__", &io::MeshQueue::size);
+        .def("next", [](const OwnQueue& queue) { return released([&] { return queue.get().next(); }); })
+        .def("__len__", [](const OwnQueue& queue) { return queue.get().size(); });
     module.def(
         "unit_colors",
         [](const ArrayLike& colors) {

@@ -1,12 +1,11 @@
 // A viewer that threads take turns in, as Python holds it.
 #pragma once
 
-#include <unistd.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -16,6 +15,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/own_process.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/viewer/viewer.h"
@@ -96,19 +96,20 @@ class Turns {
 /// A viewer that threads take turns in.
 class SharedViewer {
   public:
-    SharedViewer(const Scene& scene, DrawDevice device) : viewer_(scene, device) {}
+    SharedViewer(const Scene& scene, DrawDevice device) : shared_(new Shared(scene, device)) {}
 
     template <class Work>
     auto run(Work&& work) {
         return released([&] {
             require_same_process();
-            const std::lock_guard lock(mutex_);
-            if constexpr (std::is_void_v<decltype(work(viewer_))>) {
-                work(viewer_);
-                viewer_.tell_servers();
+            const std::lock_guard lock(shared_->turns);
+            Viewer& viewer = shared_->viewer;
+            if constexpr (std::is_void_v<decltype(work(viewer))>) {
+                work(viewer);
+                viewer.tell_servers();
             } else {
-                auto result = work(viewer_);
-                viewer_.tell_servers();
+                auto result = work(viewer);
+                viewer.tell_servers();
                 return result;
             }
         });
@@ -120,17 +121,22 @@ class SharedViewer {
 
   private:
     void require_same_process() const {
-        if (getpid() != process_)
+        if (!shared_.get_deleter().process.is_this())
             throw ContextError(
                 "this viewer belongs to the process that this one was forked from: GL contexts do not "
                 "survive a fork; "
                 "start processes with multiprocessing.get_context('spawn')");
     }
 
-    Turns mutex_;
-    pid_t process_ = getpid();
+    struct Shared {
+        Shared(const Scene& scene, DrawDevice device) : viewer(scene, device) {}
+
+        Turns turns;
+        Viewer viewer;
+    };
+
     std::exception_ptr kept_;
-    Viewer viewer_;
+    std::unique_ptr<Shared, DeleteInOwnProcess> shared_;
 };
 
 inline std::optional<Vec2i> optional_size(const nb::object& size) {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <thread>
 
+#include "easypbr/core/own_process.h"
 #include "easypbr/remote/mailbox.h"
 #include "easypbr/remote/served_files.h"
 #include "easypbr/remote/views.h"
@@ -47,6 +48,7 @@ struct Channel::Parts {
         for (const ClientId client : silent) clients.closed(client);
     }
 
+    const OwnProcess process;  ///< of the threads
     Inbox inbox;
     Mailbox mailbox;
     Clients clients;
@@ -61,6 +63,10 @@ Channel::Channel(const Scene& scene, const Settings& settings)
     : parts_(std::make_unique<Parts>(scene, settings)) {}
 
 Channel::~Channel() {
+    if (!parts_->process.is_this()) {
+        static_cast<void>(parts_.release());
+        return;
+    }
     close();
     if (!parts_->views.draws_here()) return;
     // The last one that used it was a panel's function: the thread that it runs on cannot wait for itself.
@@ -117,6 +123,7 @@ void Channel::remove_panel(const std::string& name) {
 
 void Channel::close() {
     // A panel's function that closes what draws it waits for nobody: whoever closes meanwhile waits for it.
+    if (!parts_->process.is_this()) return;
     std::unique_lock lock(parts_->closing, std::defer_lock);
     if (!parts_->views.draws_here()) lock.lock();
     if (parts_->open.exchange(false)) parts_->mailbox.shut();

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/own_process.h"
 #include "easypbr/remote/hosts.h"
 #include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/network.h"
@@ -95,6 +96,7 @@ struct Server::Parts {
     /// What a Unix socket is forwarded to.
     static constexpr int socket_port = 8123;
 
+    const OwnProcess process;  ///< of the threads
     const ServeOptions options;
     const Tokens tokens;
     Inbox inbox;
@@ -111,6 +113,10 @@ Server::Server(const Scene& scene, const Settings& settings, const ServeOptions&
 }
 
 Server::~Server() {
+    if (!parts_->process.is_this()) {
+        static_cast<void>(parts_.release());
+        return;
+    }
     close();
     if (!parts_->views.draws_here()) return;
     // The last one that used it was a panel's function: the thread that it runs on cannot wait for itself.
@@ -172,6 +178,7 @@ void Server::remove_panel(const std::string& name) {
 
 void Server::close() {
     // A panel's function that closes what draws it waits for nobody: whoever closes meanwhile waits for it.
+    if (!parts_->process.is_this()) return;
     std::unique_lock lock(parts_->closing, std::defer_lock);
     if (!parts_->views.draws_here()) lock.lock();
     if (parts_->open.exchange(false)) parts_->network.stop();
