@@ -21,6 +21,9 @@ constexpr Eigen::Index least_cloud = 100;
 
 constexpr size_t vertex_grain = 1 << 15;
 
+/// Objects whose bounds are kept: 8 MB of them.
+constexpr size_t most_known = 1 << 14;
+
 template <class Map>
 std::vector<std::string> keys_of(const Map& map) {
     std::vector<std::string> keys;
@@ -75,7 +78,7 @@ bool has_outliers(const MeshData& mesh) {
 
 /// Scans have points far away that nobody wants to see the rest shrink for.
 Box3f without_outliers(const Array3f& V) {
-    static RecentValues<uint64_t, Box3d> known(32);
+    static RecentValues<uint64_t, Box3d> known(most_known);
     const Box3d box = known.get(V.revision(), [&] { return trimmed_bounds(V); });
     return Box3f(Vec3(box.min().cast<float>()), Vec3(box.max().cast<float>()));
 }
@@ -106,13 +109,19 @@ struct SupportKey {
     Directions directions;
 
     bool operator==(const SupportKey&) const = default;
+
+    struct Hash {
+        size_t operator()(const SupportKey& key) const {
+            return std::hash<uint64_t>()(key.vertices) ^ std::hash<double>()(key.directions.sum());
+        }
+    };
 };
 
 }  // namespace
 
 SceneSnapshot::Support SceneSnapshot::support(const Directions& directions) const {
     // The bounds of a scene are asked for in each frame.
-    static RecentValues<SupportKey, Support> known(64);
+    static RecentValues<SupportKey, Support, SupportKey::Hash> known(most_known);
     Support result = Support::Constant(-std::numeric_limits<double>::infinity());
     for (const Object& object : objects) {
         if (object.mesh->V.empty()) continue;
