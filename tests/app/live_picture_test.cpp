@@ -233,5 +233,19 @@ TEST(ViewPoint, ReplacesAPinnedPositionAndComesNear) {
     ASSERT_TRUE(session.pick({32, 24}));
 }
 
+TEST(NearPlane, ComesAlongWithACameraThatSettingsMove) {
+    Session session = ball_session();
+    CameraSettings& camera = session.settings().camera;
+    camera.position = Vec3d(0, 0, 100);
+    camera.target = Vec3d(0, 0, 0);
+    session.render();
+    const double first = *camera.near;
+    camera.position = Vec3d(0, 0, 1.1);
+    EXPECT_LT(session.resolve().camera.near, 0.1);
+    EXPECT_TRUE(session.pick({32, 24}));
+    camera.position = Vec3d(0, 0, 100);
+    EXPECT_EQ(session.resolve().camera.near, first);
+}
+
 }  // namespace
 }  // namespace easypbr::app::live_picture_test

@@ -283,6 +283,22 @@ TEST(Resolve, TurnsTheEnvironmentAboutUp) {
     EXPECT_EQ(Vec3(resolve(scene, settings, size).R_env_world * Vec3(0, -1, 0)), Vec3(0, 0, 1));
 }
 
+// Depths are reversed floats: a near plane close to the camera costs nothing.
+TEST(Resolve, NearPlaneLiesBeforeWhatIsNearHoweverFarTheRestIs) {
+    Scene scene;
+    scene.show(points({{-0.5f, 0, 0}, {0.5f, 0, 0.5f}}), "near");
+    scene.show(points({{0, 0, -10000}, {500, 500, -10500}}), "far");
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        Settings settings;
+        settings.camera.projection = projection;
+        settings.camera.pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4, 0, 0, 0, 1};
+        EXPECT_NEAR(resolve(scene.snapshot(), settings, size).camera.near, 0.35, 1e-6);
+        // With some of it behind the camera.
+        settings.camera.pose[11] = 0.25;
+        EXPECT_LT(resolve(scene.snapshot(), settings, size).camera.near, 0.1);
+    }
+}
+
 TEST(Resolve, RefusesContradictions) {
     const SceneSnapshot scene = scene_of(blob());
     const auto refuses = [&](const auto& change) {

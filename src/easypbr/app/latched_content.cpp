@@ -61,9 +61,13 @@ void LatchedContent::lower_ground(const Settings& settings, ResolvedSettings& re
 
 void LatchedContent::bring_near_plane(const Settings& settings, ResolvedSettings& resolved) {
     const auto& given = settings.camera.near;
-    if (!given.value()) near_placed_ = placed_;
-    if (given.is_pinned() || placed_ == near_placed_ || placed_bounds_.isEmpty()) return;
     Camera& camera = resolved.camera;
+    if (!given.value()) {
+        near_placed_ = placed_;
+        near_T_world_cam_ = camera.T_world_cam.matrix();
+    }
+    const bool is_unmoved = placed_ == near_placed_ && camera.T_world_cam.matrix() == near_T_world_cam_;
+    if (given.is_pinned() || is_unmoved || placed_bounds_.isEmpty()) return;
     const Vec3d forward = -camera.T_world_cam.linear().col(2);
     double nearest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 8; ++i)

@@ -19,8 +19,8 @@ class LatchedContent {
     /// Releases all latched settings, and returns true, where an object of a new name makes the content
     /// larger.
     bool release_outgrown(const SceneSnapshot& scene, Settings& settings);
-    /// What one image has in place of latched values where the content has moved: a lower ground below what
-    /// has sunk, a nearer near plane before what has come near.
+    /// What one image has in place of latched values where the content or the camera has moved: a lower
+    /// ground below what has sunk, a nearer near plane before what has come near.
     void follow(const SceneSnapshot& scene, const Settings& settings, ResolvedSettings& resolved);
     /// The settings were latched for this content.
     void keep(const SceneSnapshot& scene);
@@ -41,6 +41,7 @@ class LatchedContent {
     std::vector<Placed> placed_;       ///< content of the image before
     Box3d placed_bounds_;              ///< likewise
     std::vector<Placed> near_placed_;  ///< content that the near plane was inferred for
+    Eigen::Matrix4d near_T_world_cam_ = Eigen::Matrix4d::Identity();  ///< camera that it was inferred for
 };
 
 }  // namespace easypbr::app

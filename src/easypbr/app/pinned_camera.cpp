@@ -7,7 +7,7 @@
 namespace easypbr::app {
 namespace {
 
-/// An automatic near plane stays within this part of the target's distance (auto_camera.cpp begins there).
+/// The automatic near plane of a view that is moved by hand stays within this part of the target's distance.
 constexpr double near_part = 1e-3;
 
 }  // namespace
