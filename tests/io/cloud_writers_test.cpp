@@ -70,6 +70,32 @@ TEST(CloudFiles, ComeBackAsTheyWere) {
         }
 }
 
+TEST(CloudFiles, ScalarsKeepNamesThatMeanSomethingElse) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense(Array3f::Dense::Random(6, 3));
+    mesh.UV = Array2f::Dense(Array2f::Dense::Random(6, 2));
+    mesh.C = ArrayXf::Dense::Constant(6, 3, 1.0f);
+    for (const char* name :
+         {"T", "V", "F",  "N",     "E",     "C",         "L",   "I",      "u",  "v",           "s",
+          "t", "x", "nx", "alpha", "label", "intensity", "rgb", "offset", "_T", "scalar_heat", "_heat"})
+        mesh.scalars.push_back({name, Array1f::Dense(Array1f::Dense::Random(6))});
+    for (const char* name : {"c.pcd", "c.csv", "c.npy", "c.npz", "c.ply"}) {
+        Mesh(mesh).save(folder / name);
+        const auto back = Mesh(folder / name).snapshot();
+        EXPECT_TRUE(same_bits(mesh.UV, back->UV)) << name;
+        EXPECT_EQ(back->C.cols(), 3) << name;
+        EXPECT_TRUE(back->N.empty() && back->T.empty() && back->F.empty()) << name;
+        EXPECT_TRUE(back->L.empty() && back->I.empty()) << name;
+        ASSERT_EQ(back->scalars.size(), mesh.scalars.size()) << name;
+        for (size_t i = 0; i < mesh.scalars.size(); ++i) {
+            const auto found = std::ranges::find(back->scalars, mesh.scalars[i].name, &ScalarArray::name);
+            ASSERT_NE(found, back->scalars.end()) << name << " " << mesh.scalars[i].name;
+            EXPECT_TRUE(same_bits(mesh.scalars[i].values, found->values)) << name;
+        }
+    }
+}
+
 TEST(CloudFiles, KeepTheOffset) {
     const TemporaryFolder folder;
     MeshData mesh = cloud(1000);

@@ -91,13 +91,15 @@ struct LasBuilder {
     }
 };
 
-/// A description of an extra value (LAS 1.4, table 24).
-inline std::string las_extra(uint8_t type, const std::string& name, double scale = 0, double shift = 0) {
+/// A description of an extra value (LAS 1.4, table 24). `no_data`: 8 bytes, or none.
+inline std::string las_extra(uint8_t type, const std::string& name, double scale = 0, double shift = 0,
+                             std::string no_data = {}) {
     std::string padded = name;
     padded.resize(32, '\0');
-    const uint8_t options = uint8_t((scale != 0 ? 8 : 0) | (shift != 0 ? 16 : 0));
+    const uint8_t options = uint8_t((no_data.empty() ? 0 : 1) | (scale != 0 ? 8 : 0) | (shift != 0 ? 16 : 0));
+    no_data.resize(72, '\0');
     Bytes b;
-    b.add(uint16_t(0)).add(type).add(options).text(padded).text(std::string(4 + 72, '\0'));
+    b.add(uint16_t(0)).add(type).add(options).text(padded).text(std::string(4, '\0')).text(no_data);
     b.add_all({scale, 0.0, 0.0}).add_all({shift, 0.0, 0.0}).text(std::string(32, '\0'));
     return b.str();
 }

@@ -79,6 +79,36 @@ TEST(Las, ReadsExtraBytes) {
     EXPECT_FALSE(has_scalar(mesh, "wave_1"));
 }
 
+TEST(Las, ExtraBytesTakeNoPlaceOfStandardFields) {
+    LasBuilder las{.minor_version = 4, .format = 3, .points = 1};
+    // "gps_time" of a byte stands at the end: nothing is read behind it.
+    las.extra_record = las_extra(3, "label") + las_extra(9, "alpha") + las_extra(1, "gps_time");
+    las.extra_bytes = Bytes().add(uint16_t(100)).add(3.0f).add(uint8_t(7)).str();
+    const MeshData mesh = read(las.text());
+    EXPECT_EQ(mesh.L[0], 2);
+    EXPECT_EQ(scalar_named(mesh, "label").values[0], 100);
+    ASSERT_EQ(mesh.C.cols(), 3);
+    EXPECT_NEAR(mesh.C(0, 0), 65280 / 65535.0, 1e-7);
+    EXPECT_EQ(scalar_named(mesh, "alpha").values[0], 3);
+    EXPECT_EQ(scalar_named(mesh, "gps_time_2").values[0], 7);
+    // Normals have no standard field.
+    las.extra_record = las_extra(9, "NormalX") + las_extra(9, "nx") + las_extra(9, "ny") + las_extra(9, "nz");
+    las.extra_bytes = Bytes().add(5.0f).add(0.0f).add(0.0f).add(1.0f).str();
+    EXPECT_EQ(Vec3(read(las.text()).N.row(0)), Vec3(0, 0, 1));
+}
+
+TEST(Las, ValuesOfExtraBytesThatStandForNoneAreNaN) {
+    LasBuilder las{.minor_version = 4, .format = 6};
+    las.extra_record = las_extra(4, "height", 0.01, 100, Bytes().add(int64_t(-9999)).str()) +
+                       las_extra(9, "depth", 0, 0, Bytes().add(-1.0).str()) +
+                       las_extra(1, "echo", 0, 0, Bytes().add(uint64_t(255)).str());
+    las.extra_bytes = Bytes().add(int16_t(-9999)).add(-1.0f).add(uint8_t(254)).str();
+    const MeshData mesh = read(las.text());
+    EXPECT_TRUE(std::isnan(scalar_named(mesh, "height").values[0]));
+    EXPECT_TRUE(std::isnan(scalar_named(mesh, "depth").values[0]));
+    EXPECT_EQ(scalar_named(mesh, "echo").values[0], 254);
+}
+
 TEST(Las, ReadsPointsNearZeroAsTheyAre) {
     const MeshData mesh = read(LasBuilder{.offset = {0, 0, 0}}.text());
     EXPECT_EQ(mesh.offset, Vec3d::Zero());

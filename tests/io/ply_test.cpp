@@ -97,6 +97,22 @@ TEST(Ply, ColorsOfEveryTypeAre0To1) {
     }
 }
 
+TEST(Ply, AlphaOfAnotherTypeLeavesColorsAsTheyAre) {
+    for (const std::string& format : formats) {
+        PlyBuilder ply(format);
+        ply.header("element vertex 2\nproperty float x\nproperty float y\nproperty float z")
+            .header("property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float alpha")
+            .end_header();
+        for (const double alpha : {255.0, 51.0})
+            ply.values("float", {0, 0, alpha}).values("uchar", {200, 0, 0}).value("float", alpha).end_row();
+        const MeshData mesh = read(ply.text());
+        ASSERT_EQ(mesh.C.cols(), 4) << format;
+        EXPECT_FLOAT_EQ(mesh.C(0, 0), 200 / 255.0f) << format;
+        EXPECT_FLOAT_EQ(mesh.C(0, 3), 1) << format;
+        EXPECT_FLOAT_EQ(mesh.C(1, 3), 0.2f) << format;
+    }
+}
+
 TEST(Ply, CutsPolygonsIntoFansAndRemembersThem) {
     for (const std::string& format : formats) {
         PlyBuilder ply = with_vertices(format, "element face 3\n" + face_header);

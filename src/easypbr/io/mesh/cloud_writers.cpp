@@ -5,6 +5,7 @@
 
 #include "easypbr/io/archive/zip_writer.h"
 #include "easypbr/io/tables/npy_builder.h"
+#include "easypbr/io/tables/vertex_arrays.h"
 #include "easypbr/io/tables/vertex_rows.h"
 
 namespace easypbr::io {
@@ -101,7 +102,8 @@ std::string encode_npz(const MeshData& mesh) {
     add("L", "<i4", mesh.L);
     add("I", "<f4", mesh.I);
     if (!mesh.offset.isZero(0)) add("offset", "<f8", mesh.offset);
-    for (const ScalarArray& scalar : mesh.scalars) add(plain_name(scalar.name), "<f4", scalar.values);
+    for (const ScalarArray& scalar : mesh.scalars)
+        add(scalar_field_name(plain_name(scalar.name)), "<f4", scalar.values);
     return archive.finish();
 }
 

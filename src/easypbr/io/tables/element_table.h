@@ -29,6 +29,8 @@ struct Property {
     ScalarType type = ScalarType::float32;
     std::optional<ScalarType> count_type;  ///< given for a list
     double scale = 1, shift = 0;           ///< a number stands for value * scale + shift
+    std::optional<double> missing{};       ///< the value that stands for none, before scale and shift
+    bool is_extra = false;                 ///< has a meaning with others of the kind alone, after the rest
 };
 
 struct Element {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -43,6 +44,12 @@ const Spellings label_names{{"label"},          {"labels"},         {"class"},
                             {"classification"}, {"semantic_label"}, {"semantic"}};
 const Spellings intensity_names{{"intensity"}, {"intensities"}, {"reflectance"}, {"i"}};
 
+/// What else arrays of NPZ files and packed colours of PCD are called.
+const Spellings array_names{
+    {"v"},      {"f"},       {"faces"}, {"triangles"}, {"e"},  {"edges"}, {"n"},      {"normals"},
+    {"normal"}, {"c"},       {"rgb"},   {"rgba"},      {"uv"}, {"uvs"},   {"t"},      {"tangents"},
+    {"colors"}, {"colours"}, {"color"}, {"texcoords"}, {"b"},  {"l"},     {"offset"}, {"bitangent_lengths"}};
+
 std::string lower(std::string_view text) {
     std::string result(text);
     for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
@@ -63,18 +70,26 @@ bool has_name(const Spellings& spellings, std::string_view name) {
         spellings, [&](const Names& names) { return std::ranges::find(names, plain) != names.end(); });
 }
 
+/// Whether a reader would see another meaning in a field that is called as scalars are, or another name.
+bool is_reserved(std::string_view name) {
+    return is_known_field(name) || has_name(array_names, name) || without_prefix(name) != name ||
+           (name.starts_with('_') && is_reserved(name.substr(1)));
+}
+
 /// Places of the first of several spellings of which all fields are there and free.
 std::vector<size_t> find_spelling(const std::vector<VertexField>& fields, const Spellings& spellings) {
-    for (const Names& names : spellings) {
-        std::vector<size_t> found;
-        for (const std::string_view name : names) {
-            const auto it = std::ranges::find_if(fields, [&](const VertexField& field) {
-                return field.column->is_skipped() && lower(without_prefix(field.property.name)) == name;
-            });
-            if (it != fields.end()) found.push_back(size_t(it - fields.begin()));
+    for (const bool is_extra : {false, true})
+        for (const Names& names : spellings) {
+            std::vector<size_t> found;
+            for (const std::string_view name : names) {
+                const auto it = std::ranges::find_if(fields, [&](const VertexField& field) {
+                    return field.column->is_skipped() && field.property.is_extra == is_extra &&
+                           lower(without_prefix(field.property.name)) == name;
+                });
+                if (it != fields.end()) found.push_back(size_t(it - fields.begin()));
+            }
+            if (found.size() == names.size()) return found;
         }
-        if (found.size() == names.size()) return found;
-    }
     return {};
 }
 
@@ -95,17 +110,40 @@ double color_scale(ScalarType type) {
     return type == ScalarType::uint8 ? 1 / 255.0 : type == ScalarType::uint16 ? 1 / 65535.0 : 1.0;
 }
 
-/// Whether their values tell their range, not their types.
-bool plan_color_columns(const std::vector<VertexField>& fields, size_t count, ArrayXf::Dense& C) {
+/// Returns the columns of C whose values tell their range, not their types.
+std::vector<int> plan_color_columns(const std::vector<VertexField>& fields, size_t count, ArrayXf::Dense& C) {
     const auto color = find_spelling(fields, color_names);
     plan_floats(fields, color, count, C);
-    bool tell = false;
-    for (const size_t i : color) {
-        const double scale = color_scale(fields[i].property.type);
-        fields[i].column->scale = scale;
-        tell |= scale == 1;
+    std::vector<int> tell;
+    for (size_t k = 0; k < color.size(); ++k) {
+        const VertexField& field = fields[color[k]];
+        field.column->scale = color_scale(field.property.type);
+        if (field.column->scale == 1) tell.push_back(int(k));
     }
     return tell;
+}
+
+/// Brings these columns of colours to 0 .. 1.
+void normalize_columns(const std::vector<int>& columns, ArrayXf::Dense& C) {
+    if (columns.empty()) return;
+    if (Eigen::Index(columns.size()) == C.cols()) {
+        normalize_colors(C);
+    } else {
+        ArrayXf::Dense part = C(Eigen::all, columns);
+        normalize_colors(part);
+        C(Eigen::all, columns) = part;
+    }
+    tidy_colors(C);
+}
+
+/// Values that stand for none become NaN.
+void clear_missing(const Property& property, Array1f::Dense& values) {
+    if (!property.missing) return;
+    const float missing = float(*property.missing * property.scale + property.shift);
+    parallel_for(size_t(values.rows()), array_grain, [&](size_t i) {
+        float& value = values[Eigen::Index(i)];
+        if (value == missing) value = std::numeric_limits<float>::quiet_NaN();
+    });
 }
 
 }  // namespace
@@ -125,7 +163,7 @@ VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count)
     plan_floats(fields, find_spelling(fields, tangent_names), count, T_);
     plan_floats(fields, find_spelling(fields, bitangent_names), count, B_);
     plan_floats(fields, find_spelling(fields, uv_names), count, UV_);
-    colors_tell_range_ = plan_color_columns(fields, count, C_);
+    ranged_colors_ = plan_color_columns(fields, count, C_);
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(Eigen::Index(count));
         fields[label[0]].column->integers = L_.data();
@@ -141,11 +179,11 @@ void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t c
     for (const VertexField& field : fields) {
         if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
             continue;
-        const std::string plain = without_prefix(field.property.name);
+        const std::string plain = scalar_name(field.property.name);
         std::string name = plain;
         int& number = numbers.try_emplace(plain, 1).first->second;
         while (!taken.insert(name).second) name = fmt::format("{}_{}", plain, ++number);
-        scalars_.push_back({name, Array1f::Dense(Eigen::Index(count))});
+        scalars_.push_back({name, field.property, Array1f::Dense(Eigen::Index(count))});
         columns.push_back(field.column);
     }
     for (size_t i = 0; i < columns.size(); ++i) columns[i]->floats = scalars_[i].values.data();
@@ -169,10 +207,7 @@ void VertexArrays::recentre_positions() {
 
 void VertexArrays::move_into(MeshData& mesh) {
     tidy_normals(N_);
-    if (colors_tell_range_) {
-        normalize_colors(C_);
-        tidy_colors(C_);
-    }
+    normalize_columns(ranged_colors_, C_);
     tidy_uv(UV_);
     mesh.offset = offset_;
     mesh.V = std::move(V_);
@@ -183,7 +218,10 @@ void VertexArrays::move_into(MeshData& mesh) {
     if (UV_.size()) mesh.UV = std::move(UV_);
     if (L_.size()) mesh.L = std::move(L_);
     if (I_.size()) mesh.I = std::move(I_);
-    for (Scalar& scalar : scalars_) mesh.scalars.push_back({scalar.name, std::move(scalar.values)});
+    for (Scalar& scalar : scalars_) {
+        clear_missing(scalar.property, scalar.values);
+        mesh.scalars.push_back({scalar.name, std::move(scalar.values)});
+    }
     *this = {};
 }
 
@@ -193,7 +231,7 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         if (!plan.element->properties[i].count_type)
             fields.push_back({plan.element->properties[i], &plan.columns[i]});
     const auto rows = Eigen::Index(plan.element->count);
-    colors_tell_range_ = plan_color_columns(fields, size_t(rows), C_);
+    ranged_colors_ = plan_color_columns(fields, size_t(rows), C_);
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(rows);
         fields[label[0]].column->integers = L_.data();
@@ -202,16 +240,13 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         if (!field.column->is_skipped() || has_name(normal_names, field.property.name) ||
             field.property.name == "texnumber")
             continue;
-        scalars_.emplace_back(without_prefix(field.property.name), Array1f::Dense(rows));
+        scalars_.emplace_back(scalar_name(field.property.name), Array1f::Dense(rows));
         field.column->floats = scalars_.back().second.data();
     }
 }
 
 ArrayXf::Dense FaceArrays::take_colors() {
-    if (colors_tell_range_) {
-        normalize_colors(C_);
-        tidy_colors(C_);
-    }
+    normalize_columns(ranged_colors_, C_);
     return std::exchange(C_, {});
 }
 
@@ -242,6 +277,14 @@ bool is_known_field(std::string_view name) {
 
 bool is_position_field(std::string_view name) {
     return has_name(position_names, name);
+}
+
+std::string scalar_field_name(const std::string& name) {
+    return is_reserved(name) ? "_" + name : name;
+}
+
+std::string scalar_name(const std::string& field) {
+    return field.starts_with('_') && is_reserved(field.substr(1)) ? field.substr(1) : without_prefix(field);
 }
 
 std::vector<std::string> names_of_parts(const std::string& name, size_t count) {

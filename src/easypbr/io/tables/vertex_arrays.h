@@ -48,6 +48,7 @@ class VertexArrays {
   private:
     struct Scalar {
         std::string name;
+        Property property;
         Array1f::Dense values;
     };
 
@@ -56,7 +57,7 @@ class VertexArrays {
     std::optional<std::array<size_t, 3>> position_;
     std::array<Column*, 3> position_columns_{};
     Vec3d offset_ = Vec3d::Zero();
-    bool colors_tell_range_ = false;  ///< by their values; else their type does
+    std::vector<int> ranged_colors_;  ///< columns whose values tell their range; the types of others do
     Array3f::Dense V_, N_, T_;
     ArrayXf::Dense C_;
     Array2f::Dense UV_;
@@ -82,7 +83,7 @@ class FaceArrays {
 
   private:
     ArrayXf::Dense C_;
-    bool colors_tell_range_ = false;
+    std::vector<int> ranged_colors_;
     Array1i::Dense L_;
     std::vector<std::pair<std::string, Array1f::Dense>> scalars_;
 };
@@ -92,6 +93,12 @@ bool is_known_field(std::string_view name);
 
 /// Whether it is one of those of positions.
 bool is_position_field(std::string_view name);
+
+/// What scalars of this name are called in a file: with '_' before it where something else would be seen in
+/// it.
+std::string scalar_field_name(const std::string& name);
+/// The name of the scalars of a field; without that '_', and without "scalar_".
+std::string scalar_name(const std::string& field);
 
 /// Names for a field of several values: those of the parts of a position, normal, colour or texture
 /// coordinate when it is called so and has as many, else NAME_0, NAME_1, ...

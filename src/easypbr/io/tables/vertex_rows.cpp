@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/tables/vertex_arrays.h"
 
 namespace easypbr::io {
 namespace {
@@ -63,7 +64,8 @@ void add_labels_and_scalars(const MeshData& mesh, PerElement element, std::vecto
     if (is_of(mesh.L)) parts.push_back(raw_part({"label"}, ScalarType::int32, mesh.L));
     for (const ScalarArray& scalar : mesh.scalars)
         if (is_of(scalar.values))
-            parts.push_back(raw_part({plain_name(scalar.name)}, ScalarType::float32, scalar.values));
+            parts.push_back(
+                raw_part({scalar_field_name(plain_name(scalar.name))}, ScalarType::float32, scalar.values));
 }
 
 template <class Number>

@@ -28,7 +28,7 @@ struct RowStyle {
 
 /// All that a mesh has for its vertices: positions (float64, with the offset added, unless that is zero),
 /// normals, colours as bytes, texture coordinates, tangents, bitangent lengths, labels, intensities, scalars.
-/// Names of scalars are plain_name()s.
+/// Names of scalars are plain_name()s, as scalar_field_name() says.
 std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style = {});
 
 /// A name with '_' for what is no letter, digit, '.' or '-'.

@@ -128,8 +128,18 @@ class LasHeaderParser {
             Property property{values == 1 ? name : fmt::format("{}_{}", name, i), scalar, {}, 1, 0};
             if (options & 8) property.scale = at<double>(place + 112 + 8 * i);
             if (options & 16) property.shift = at<double>(place + 136 + 8 * i);
+            if (options & 1) property.missing = no_data(place + 40 + 8 * i, scalar);
+            property.is_extra = true;
             header_.extra.push_back(std::move(property));
         }
+    }
+
+    /// It is stored as the largest type of its kind.
+    double no_data(size_t place, ScalarType type) const {
+        if (!is_integer(type)) return at<double>(place);
+        const bool is_unsigned = type == ScalarType::uint8 || type == ScalarType::uint16 ||
+                                 type == ScalarType::uint32 || type == ScalarType::uint64;
+        return is_unsigned ? double(at<uint64_t>(place)) : double(at<int64_t>(place));
     }
 
     const Source& source_;

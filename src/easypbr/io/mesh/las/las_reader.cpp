@@ -21,7 +21,7 @@ constexpr size_t las_grain = 1 << 16;
 void shorten_times(const char* first_record, std::vector<Property>& fields) {
     size_t place = 0;
     for (Property& field : fields) {
-        if (field.name == "gps_time") {
+        if (field.name == "gps_time" && !field.is_extra) {
             double seconds;
             std::memcpy(&seconds, first_record + place, sizeof seconds);
             if (std::isfinite(seconds)) field.shift = -std::floor(seconds);

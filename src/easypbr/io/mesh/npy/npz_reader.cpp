@@ -9,6 +9,7 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/npy/npy_points.h"
 #include "easypbr/io/tables/polygons.h"
+#include "easypbr/io/tables/vertex_arrays.h"
 
 namespace easypbr::io {
 namespace {
@@ -209,9 +210,9 @@ class NpzReader {
         for (const NamedArray* named : face_values_) {
             if (is_any_of(npz_labels, named->lower_name) && mesh_.L.empty())
                 mesh_.L = of_triangles(values_of<Integers>(*named));
-            else if (std::ranges::none_of(mesh_.scalars,
-                                          [&](const ScalarArray& s) { return s.name == named->name; }))
-                mesh_.scalars.push_back({named->name, of_triangles(values_of<Eigen::VectorXf>(*named))});
+            else if (const std::string name = scalar_name(named->name); std::ranges::none_of(
+                         mesh_.scalars, [&](const ScalarArray& s) { return s.name == name; }))
+                mesh_.scalars.push_back({name, of_triangles(values_of<Eigen::VectorXf>(*named))});
         }
     }
 
