@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/archive/deflate.h"
 #include "easypbr/io/mesh/content_format.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -219,6 +220,19 @@ TEST(PackedSplats, SpzTurnsWhatPointsDown) {
     EXPECT_NEAR(back.splats.sh(0, 3), -mesh.splats.sh(0, 3), 4.5 / 128 + 1e-5);
     EXPECT_NEAR(back.splats.sh(0, 6), -mesh.splats.sh(0, 6), 4.5 / 128 + 1e-5);
     EXPECT_NEAR(back.splats.sh(0, 9), mesh.splats.sh(0, 9), 4.5 / 128 + 1e-5);
+}
+
+TEST(PackedSplats, SpzSaysWherePositionsAreCoarse) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    MeshData mesh = various_splats(100);
+    io::encode_spz(mesh);
+    EXPECT_TRUE(warnings.empty());
+    mesh.offset = Vec3d(691'000, 5'335'000, 500);
+    io::encode_spz(mesh);
+    set_log_sink({});
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_TRUE(has(warnings[0], "steps of 1,")) << warnings[0];
 }
 
 TEST(PackedSplats, SpzHoldsSplatsAlone) {

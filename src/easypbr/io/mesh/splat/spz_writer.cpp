@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/archive/deflate.h"
 #include "easypbr/io/mesh/mesh_readers.h"
@@ -56,6 +57,17 @@ int fractional_bits_of(const MeshData& mesh) {
     return std::clamp(int(std::floor(std::log2(most_fixed / farthest))), 0, 24);
 }
 
+/// Far from zero the steps of positions are large.
+void warn_of_coarse_positions(const SplatArrays& splats, int fractional_bits) {
+    const double step = std::ldexp(1.0, -fractional_bits);
+    const Eigen::Index fine = (splats.scales.rowwise().maxCoeff().cast<double>().array() < step).count();
+    if (2 * fine <= splats.scales.rows()) return;
+    log_warning(
+        fmt::format("SPZ holds positions this far from zero in steps of {:.3g}, and {} of {} splats are "
+                    "smaller: move them near zero (offset), or write PLY or GLB",
+                    step, fine, splats.scales.rows()));
+}
+
 void write_spz_rotation(const SplatArrays& splats, Eigen::Index i, uint8_t* out) {
     Eigen::RowVector4f wxyz = splats.rotations.row(i).normalized();
     float xyzw[4];
@@ -89,13 +101,11 @@ std::string encode_spz(const MeshData& mesh) {
     const SpzSplats written(mesh);
     const SplatArrays& splats = written.splats;
     const auto count = size_t(mesh.V.rows());
-    const SpzHeader header{spz_magic,
-                           written_version,
-                           uint32_t(count),
-                           uint8_t(splats.degree()),
-                           uint8_t(fractional_bits_of(mesh)),
-                           0,
-                           0};
+    const int fractional_bits = fractional_bits_of(mesh);
+    warn_of_coarse_positions(splats, fractional_bits);
+    const SpzHeader header{
+        spz_magic, written_version, uint32_t(count), uint8_t(splats.degree()), uint8_t(fractional_bits), 0,
+        0};
     const SpzSizes sizes(written_version, splats.degree());
     std::string out(sizeof header + count * sizes.all(), '\0');
     std::memcpy(out.data(), &header, sizeof header);
