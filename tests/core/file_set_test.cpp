@@ -1,6 +1,7 @@
 #include "easypbr/core/file_set.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <functional>
 
@@ -69,6 +70,26 @@ TEST_F(FileSets, ChangeNothingWhereOneTargetIsAFolder) {
         EXPECT_THROW(set.commit(), FileError);
     }
     expect_untouched(2);
+}
+
+TEST_F(FileSets, LeaveWhatIsWriteProtected) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+    fs::permissions(folder_ / "old", fs::perms::owner_read);
+    EXPECT_THROW(first_.commit(), FileError);
+    EXPECT_THROW(write_file(folder_ / "old", std::string_view("after")), FileError);
+    EXPECT_EQ(text_of("old"), "before");
+}
+
+TEST_F(FileSets, FollowLinksThatLeadToNoFileYet) {
+    fs::create_directory(folder_ / "folder");
+    fs::create_symlink("folder/new", folder_ / "inner");
+    fs::create_symlink(folder_ / "inner", folder_ / "link");
+    write_file(folder_ / "link", std::string_view("text"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "inner"));
+    EXPECT_EQ(text_of("folder/new"), "text");
+    // What is written beside the target is none of the folder's own.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "folder"), {}), 1);
 }
 
 }  // namespace

@@ -32,9 +32,12 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
     }
 }
 
-/// Where a file is really written: a link stays a link.
-fs::path real_target(const fs::path& path) {
+/// Where a file is really written: a link stays a link, also one that leads to no file yet.
+fs::path real_target(fs::path path) {
     std::error_code ignored;
+    constexpr int most_links = 40;  // as many as Linux follows
+    for (int i = 0; i < most_links && fs::is_symlink(path, ignored) && !fs::exists(path, ignored); ++i)
+        path = path.parent_path() / fs::read_symlink(path, ignored);
     const fs::path real = fs::weakly_canonical(path, ignored);
     return real.empty() ? path : real;
 }
@@ -73,8 +76,7 @@ void FileSet::add(const fs::path& path, std::string_view text) {
 }
 
 void FileSet::commit() {
-    if (files_.size() > 1)
-        for (const File& file : files_) require_writable(file.target);
+    for (const File& file : files_) require_writable(file.target);
     while (!files_.empty()) {
         const File& file = files_.front();
         if (::rename(file.beside.c_str(), file.target.c_str()) != 0) fail_write(file.target, errno);
