@@ -28,7 +28,9 @@ void main() {
     float alpha = min(s.shape.w * exp(-power), most_alpha);
     float surface = is_limited ? texelFetch(u_depth_target, ivec2(gl_FragCoord.xy), 0).r : 0.0;
     if (surface > 0.0) {
-        float before = (dot(s.depths.xy, d) + s.color.w - surface) * s.depths.z, margin = is_soft ? reach : 0.0;
+        // In deviations of distances, as native/simd/blend_splats.h has them.
+        float scale = s.depths.w > 0.0 ? s.depths.w / surface : 1.0, margin = is_soft ? reach : 0.0;
+        float before = (dot(s.depths.xy, d) + s.color.w - surface) * s.depths.z * scale;
         if (before < -margin) discard;
         // The part before the surface of a medium with this density.
         if (before < margin) alpha = 1.0 - exp(normal_cdf(before) * log(1.0 - alpha));

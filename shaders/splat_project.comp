@@ -132,7 +132,7 @@ bool project(uint i, out ScreenSplat splat) {
     vec3 color = color_of(i, direction);
     if (is_darkened) color = darkened(i, color, vec3(shapes[s], shapes[s + 1u], shapes[s + 2u]), turn, -direction);
     splat = ScreenSplat(vec4(place, reach), vec4(yy / area, -own_xy / area, xx / area, opacity),
-                        vec4(color, ndc.z), vec4(by_place, sharpness, 0.0));
+                        vec4(color, ndc.z), vec4(by_place, sharpness, is_orthographic ? 0.0 : ndc.z));
     return true;
 }
 

@@ -308,8 +308,7 @@ TEST(GaussianSplats, AreBeforeAndBehindLayers) {
 }
 
 /// A splat that is thick along the view, `deviations` standard deviations before the plane z = 0.
-Splat thick_splat(double deviations) {
-    constexpr double thickness = 0.02;
+Splat thick_splat(double deviations, double thickness) {
     Splat splat = wide_splat(deviations * thickness);
     splat.scales.z() = thickness;
     return splat;
@@ -320,15 +319,15 @@ double normal_cdf(double deviations) {
 }
 
 // A surface hides the part of a splat's density along the ray that is behind it: of a medium that lets 1/4
-// through, the part p before the surface lets 4^-p through. Depths are to first order: thickness / distance =
-// 1/200.
+// through, the part p before the surface lets 4^-p through.
 TEST(GaussianSplats, AreCutBySurfaces) {
     for (const bool native : {true, false})
         for (const bool resort : {false, true})
             for (const double deviations : {-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0}) {
                 Scene scene;
                 scene.show(unlit_square(Vec3(0, 1, 0)), "square");
-                scene.show(Mesh(mesh_of({thick_splat(deviations)})), "splat");
+                const double thickness = resort ? 0.02 : 0.5;
+                scene.show(Mesh(mesh_of({thick_splat(deviations, thickness)})), "splat");
                 const double through = std::pow(0.25, normal_cdf(deviations));
                 for (const bool soft : {true, false}) {
                     app::Session session = session_of(scene, 32);
@@ -351,7 +350,7 @@ TEST(GaussianSplats, AreCutBySurfaces) {
 TEST(GaussianSplats, AreCutByLayers) {
     Scene scene;
     scene.show(unlit_square(Vec3(0, 1, 0), 0.5f), "square");
-    scene.show(Mesh(mesh_of({thick_splat(0)})), "splat");
+    scene.show(Mesh(mesh_of({thick_splat(0, 0.02)})), "splat");
     const float red = 0.5f + 0.5f * 0.5f * 0.5f, green = 0.5f * 0.5f;
     EXPECT_LT((middle_of(scene) - Eigen::Vector4f(red, green, 0, red + green)).norm(), 4e-3f);
 }

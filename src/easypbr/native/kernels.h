@@ -172,6 +172,8 @@ inline constexpr float least_splat_transmittance = 1e-4f;
 /// Standard deviations from where a splat is densest along a ray, beyond which there is nothing of it:
 /// 1/4000.
 inline constexpr float splat_reach = 3.5f;
+/// Surfaces of smaller reversed depths are as far away as these.
+inline constexpr float least_splat_limit = 1e-30f;
 /// To first order a large splat reaches behind the camera or beyond all: no farther than this times its mean.
 inline constexpr float farthest_splat_part = 0.1f;
 
@@ -187,7 +189,7 @@ struct alignas(64) ScreenSplat {
     float depth;                    ///< of its mean, reversed
     float depth_x, depth_y;         ///< change of the depth, per pixel
     float half_width, half_height;  ///< of the box, in pixels, outside of which it is not seen
-    /// Inverse of the standard deviation of its density along a pixel's ray, per unit of depth.
+    /// Inverse of the standard deviation of its density along a pixel's ray, per unit of depth, at the mean.
     float sharpness;
     uint32_t index;  ///< of the vertex
 };

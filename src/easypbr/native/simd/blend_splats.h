@@ -57,6 +57,24 @@ INLINE vfloat cut_opacity(vfloat opacity, vfloat to_farthest, vfloat to_nearest)
     return 1.0f - exp(part * log(1.0f - opacity));
 }
 
+/// What deviations of reversed depths from the limits of a tile's pixels are multiplied with.
+struct LimitScales {
+    alignas(sizeof(Floats)) float farthest[tile_size * tile_size], nearest[tile_size * tile_size];
+};
+
+/// A splat's density is a Gaussian of the distance, not of the depth, its reciprocal in a perspective view.
+/// With a standard deviation that grows with the distance, as that of a flat splat does where its rays are
+/// longer, a limit is (depth - limit) mean / limit of the deviation at the mean away.
+INLINE void find_limit_scales(const SplatPixels& tile, LimitScales& scales) {
+    const bool is_reciprocal = tile.axis[2] != 0;
+    for (size_t at = 0; at < tile_size * tile_size; at += lanes) {
+        const vfloat farthest = clamp(load_pixels(tile.farthest + at), least_splat_limit, 1.0f),
+                     nearest = clamp(load_pixels(tile.nearest + at), least_splat_limit, 1.0f);
+        store_pixels(scales.farthest + at, is_reciprocal ? 1.0f / farthest : vfloat(1.0f));
+        store_pixels(scales.nearest + at, is_reciprocal ? 1.0f / nearest : vfloat(1.0f));
+    }
+}
+
 /// First and one past the last pixel of a tile whose centres lie in [low, high] of the frame.
 struct PixelSpan {
     int first, end;
@@ -79,8 +97,8 @@ INLINE bool is_opaque(const SplatPixels& tile) {
 
 /// Of a part of a row where a splat may be seen.
 template <bool is_limited, bool sums_positions>
-INLINE void blend_pixels(const SplatPixels& tile, const ScreenSplat& splat, uint32_t place, vfloat dx,
-                         float dy, vfloat farthest_power, size_t at) {
+INLINE void blend_pixels(const SplatPixels& tile, const LimitScales& scales, const ScreenSplat& splat,
+                         uint32_t place, vfloat dx, float dy, vfloat farthest_power, size_t at) {
     const vfloat power = (vfloat(0.5f * splat.xx) * dx + splat.xy * dy) * dx + 0.5f * splat.yy * dy * dy;
     const vfloat light = load_pixels(tile.through + at);
     vbool seen = power <= farthest_power && light >= least_splat_transmittance;
@@ -88,8 +106,11 @@ INLINE void blend_pixels(const SplatPixels& tile, const ScreenSplat& splat, uint
     vfloat to_farthest = 0.0f, to_nearest = 0.0f, depth = 0.0f;
     if (is_limited || sums_positions) depth = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
     if (is_limited) {
-        to_farthest = (depth - load_pixels(tile.farthest + at)) * splat.sharpness;
-        to_nearest = (depth - load_pixels(tile.nearest + at)) * splat.sharpness;
+        const float mean = tile.axis[2] != 0 ? splat.depth : 1;
+        to_farthest = (depth - load_pixels(tile.farthest + at)) * splat.sharpness *
+                      (mean * load_pixels(scales.farthest + at));
+        to_nearest = (depth - load_pixels(tile.nearest + at)) * splat.sharpness *
+                     (mean * load_pixels(scales.nearest + at));
         const float margin = tile.is_soft ? splat_reach : 0;
         seen = seen && to_farthest >= -margin && to_nearest < margin;
         is_cut = seen && (to_farthest < margin || to_nearest >= -margin);
@@ -117,14 +138,14 @@ INLINE void blend_pixels(const SplatPixels& tile, const ScreenSplat& splat, uint
 }
 
 template <bool is_limited, bool sums_positions>
-void blend_one(const SplatPixels& tile, const ScreenSplat& splat, uint32_t place) {
+void blend_one(const SplatPixels& tile, const LimitScales& scales, const ScreenSplat& splat, uint32_t place) {
     const PixelSpan columns = span_of(splat.x, splat.half_width, tile.left),
                     rows = span_of(splat.y, splat.half_height, tile.top);
     const vfloat farthest_power = log(vfloat(splat.opacity / least_splat_alpha)), steps = counted_lanes();
     for (int y = rows.first; y < rows.end; ++y) {
         const float dy = float(tile.top + y) + 0.5f - splat.y;
         for (int x = columns.first / lanes * lanes; x < columns.end; x += lanes)
-            blend_pixels<is_limited, sums_positions>(tile, splat, place,
+            blend_pixels<is_limited, sums_positions>(tile, scales, splat, place,
                                                      steps + (float(tile.left + x) + 0.5f - splat.x), dy,
                                                      farthest_power, size_t(y) * tile_size + size_t(x));
     }
@@ -132,10 +153,12 @@ void blend_one(const SplatPixels& tile, const ScreenSplat& splat, uint32_t place
 
 template <bool is_limited, bool sums_positions>
 void blend_all(const SplatPixels& tile, const ScreenSplat* splats, const uint32_t* places, size_t count) {
+    LimitScales scales;
+    if (is_limited) find_limit_scales(tile, scales);
     for (size_t i = 0; i < count; ++i) {
         if (i % splats_between_looks == 0 && is_opaque(tile)) return;
         if (i + splats_ahead < count) __builtin_prefetch(&splats[places[i + splats_ahead]]);
-        blend_one<is_limited, sums_positions>(tile, splats[places[i]], places[i]);
+        blend_one<is_limited, sums_positions>(tile, scales, splats[places[i]], places[i]);
     }
 }
 

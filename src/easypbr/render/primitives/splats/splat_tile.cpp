@@ -23,6 +23,13 @@ float cut_opacity(float opacity, float to_farthest, float to_nearest) {
     return -std::expm1(part * std::log1p(-opacity));
 }
 
+/// Standard deviations from where a splat is densest to a limit (as simd/blend_splats.h).
+float deviations_to(float limit, float depth, const ProjectedSplat& splat, bool is_reciprocal) {
+    const float scale =
+        is_reciprocal ? splat.depth * (1 / std::clamp(limit, native::least_splat_limit, 1.0f)) : 1;
+    return (depth - limit) * splat.sharpness * scale;
+}
+
 }  // namespace
 
 void SplatTile::clear() {
@@ -90,8 +97,9 @@ void SplatTile::blend_resorted(std::span<const ProjectedSplat> splats, std::span
             const ProjectedSplat& splat = splats[one.place];
             float alpha = one.alpha;
             if (is_limited) {
-                const float to_farthest = (one.depth - farthest[at]) * splat.sharpness,
-                            to_nearest = (one.depth - nearest[at]) * splat.sharpness,
+                const bool is_reciprocal = axis.c != 0;
+                const float to_farthest = deviations_to(farthest[at], one.depth, splat, is_reciprocal),
+                            to_nearest = deviations_to(nearest[at], one.depth, splat, is_reciprocal),
                             margin = is_soft ? native::splat_reach : 0;
                 if (!(to_farthest >= -margin && to_nearest < margin)) continue;
                 if (to_farthest < margin || to_nearest >= -margin)
