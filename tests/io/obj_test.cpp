@@ -8,6 +8,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/scene/mesh.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::obj_test {
@@ -262,6 +263,27 @@ TEST(Obj, GivesTheSameMeshHoweverItIsCutIntoPieces) {
         for (int f = part.first_face; f < part.first_face + part.face_count; ++f)
             ASSERT_EQ(mesh.materials[size_t(part.material)].name,
                       fmt::format("m{}", (mesh.source_face(f) + 1) / 1000 % 7));
+}
+
+TEST(Obj, WritesNormalsOfFacesWhereAMeshIsDrawnFlat) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    mesh.F = Array3i(Array3i::Dense{{0, 2, 1}, {0, 1, 3}});
+    for (const bool has_uv : {false, true}) {
+        if (has_uv) mesh.UV = Array2f(Array2f::Dense{{0, 0}, {1, 0}, {0, 1}, {1, 1}});
+        mesh.style.flat = true;
+        Mesh(mesh).save(folder / "flat.obj");
+        const auto flat = Mesh(folder / "flat.obj").snapshot();
+        ASSERT_EQ(flat->F.rows(), 2);
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_EQ(Vec3(flat->N.row(flat->F(0, k))), Vec3(0, 0, -1));
+            EXPECT_EQ(Vec3(flat->N.row(flat->F(1, k))), Vec3(0, -1, 0));
+        }
+        mesh.style.flat = false;
+        Mesh(mesh).save(folder / "smooth.obj");
+        EXPECT_TRUE(Mesh(folder / "smooth.obj").snapshot()->N.empty());
+    }
 }
 
 }  // namespace easypbr::obj_test

@@ -9,6 +9,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
 namespace {
@@ -37,6 +38,11 @@ void append_position(const Eigen::RowVector3d& position, std::string& line) {
     for (const double value : position) fmt::format_to(std::back_inserter(line), " {}", value);
 }
 
+/// What is drawn flat has a normal for each face.
+bool is_flat(const MeshData& mesh) {
+    return mesh.N.empty() && !mesh.F.empty() && mesh.style.flat.value_or(false);
+}
+
 void append_vertices(const MeshData& mesh, std::string& out) {
     append_lines(size_t(mesh.V.rows()), out, [&](Eigen::Index row, std::string& text) {
         text += "v";
@@ -52,23 +58,25 @@ void append_vertices(const MeshData& mesh, std::string& out) {
         append_numbers(mesh.UV.row(row), text);
         text += '\n';
     });
-    append_lines(size_t(mesh.N.rows()), out, [&](Eigen::Index row, std::string& text) {
+    const Array3f N = is_flat(mesh) ? face_normals(mesh.V, mesh.F) : mesh.N;
+    append_lines(size_t(N.rows()), out, [&](Eigen::Index row, std::string& text) {
         text += "vn";
-        append_numbers(mesh.N.row(row), text);
+        append_numbers(N.row(row), text);
         text += '\n';
     });
 }
 
 void append_faces(const MeshData& mesh, const MeshPart& part, std::string& out) {
-    const bool has_uv = !mesh.UV.empty(), has_normal = !mesh.N.empty();
+    const bool has_uv = !mesh.UV.empty(), flat = is_flat(mesh), has_normal = flat || !mesh.N.empty();
     append_lines(size_t(part.face_count), out, [&](Eigen::Index row, std::string& text) {
         text += "f";
         for (Eigen::Index k = 0; k < 3; ++k) {
-            const int32_t v = mesh.F(part.first_face + row, k) + 1;
+            const int32_t v = mesh.F(part.first_face + row, k) + 1,
+                          n = flat ? int32_t(part.first_face + row) + 1 : v;
             const auto to = std::back_inserter(text);
-            if (has_uv && has_normal) fmt::format_to(to, " {0}/{0}/{0}", v);
+            if (has_uv && has_normal) fmt::format_to(to, " {0}/{0}/{1}", v, n);
             if (has_uv && !has_normal) fmt::format_to(to, " {0}/{0}", v);
-            if (!has_uv && has_normal) fmt::format_to(to, " {0}//{0}", v);
+            if (!has_uv && has_normal) fmt::format_to(to, " {}//{}", v, n);
             if (!has_uv && !has_normal) fmt::format_to(to, " {0}", v);
         }
         text += '\n';
