@@ -236,6 +236,8 @@ TEST_F(Recordings, SayWhatCannotBeRecorded) {
     EXPECT_NE(codec.find("libx264"), std::string::npos) << codec;
     EXPECT_NE(error_of(folder_ / "%d.png", {.codec = "libx264"}).find("pictures have no codec"),
               std::string::npos);
+    EXPECT_NE(error_of(folder_ / "%d.jpg", {.size = Vec2i(65536, 1)}).find("65536x1 pixels"),
+              std::string::npos);
     session_.settings().background.mode = BackgroundMode::transparent;
     EXPECT_NE(error_of(folder_ / "a.mp4").find("no transparency"), std::string::npos);
     EXPECT_NE(error_of(folder_ / "%d.jpg").find("no transparency"), std::string::npos);

@@ -60,3 +60,13 @@ def test_comparison():
     difference = easypbr.compare_images(a, b)
     # One of four pixels differs, by 3 in all its channels: mean 3 / 4.
     assert difference["max"] == 3 and difference["different"] == 1 and difference["mean"] == 0.75
+
+
+def test_what_a_format_cannot_hold_is_refused_before_it_is_drawn(tmp_path, monkeypatch):
+    def draw(*args, **kwargs):
+        raise AssertionError("drawn")
+
+    monkeypatch.setattr(easypbr.Viewer, "render", draw)
+    with pytest.raises(ValueError, match="65536x1 pixels, jpg holds at most 65500"):
+        easypbr.render(easypbr.shapes.box(), tmp_path / "a.jpg", size=(65536, 1))
+    assert not list(tmp_path.iterdir())

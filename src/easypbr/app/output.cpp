@@ -28,8 +28,19 @@ Encoding encoding_for(const fs::path& path, bool deep) {
     return deep && extension == "png" ? Encoding::srgb16 : Encoding::srgb8;
 }
 
-void check_picture(const fs::path& path, const Settings& settings) {
+void check_picture_fits(const fs::path& path, Vec2i size) {
+    const std::string extension = extension_of(path);
+    const int largest = io::largest_image_side(extension);
+    if (size.maxCoeff() > largest)
+        throw ArgumentError(
+            fmt::format("cannot write {}: {}x{} pixels, {} holds at most {} a side; write PNG "
+                        "or EXR",
+                        path.string(), size.x(), size.y(), extension, largest));
+}
+
+void check_picture(const fs::path& path, const Settings& settings, std::optional<Vec2i> size) {
     encoding_for(path);
+    check_picture_fits(path, size.value_or(settings.image.size));
     const std::string extension = extension_of(path);
     if (settings.background.mode == BackgroundMode::transparent &&
         (extension == "jpg" || extension == "jpeg"))
@@ -47,7 +58,7 @@ fs::path layer_path(const fs::path& picture, const std::string& layer) {
 fs::path render_to_file(Session& session, const fs::path& path, const PictureOptions& options, bool deep) {
     PictureOptions picture = options;
     picture.encoding = encoding_for(path, deep);
-    check_picture(path, session.settings());
+    check_picture(path, session.settings(), options.size);
     io::save_image(session.render(picture), path);
     return path;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,14 @@ namespace easypbr::app {
 /// Throws ArgumentError for an extension that cannot be written.
 Encoding encoding_for(const std::filesystem::path& path, bool deep = false);
 
+/// Throws ArgumentError when a picture is larger than a file of this extension holds.
+void check_picture_fits(const std::filesystem::path& path, Vec2i size);
+
 /// Throws, before anything is drawn, when the picture cannot be written there: FileError, or ArgumentError
-/// for an unknown extension and for a transparent JPEG.
-void check_picture(const std::filesystem::path& path, const Settings& settings);
+/// for an unknown extension, a size that the format does not hold (none: the settings') and a transparent
+/// JPEG.
+void check_picture(const std::filesystem::path& path, const Settings& settings,
+                   std::optional<Vec2i> size = std::nullopt);
 
 /// "OUT_depth.exr" next to "OUT.png".
 std::filesystem::path layer_path(const std::filesystem::path& picture, const std::string& layer);

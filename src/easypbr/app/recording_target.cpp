@@ -160,7 +160,7 @@ void check_recording(const fs::path& path, const Settings& settings, const Recor
             fmt::format("cannot record {}: pictures have no codec, got '{}'", path.string(), options.codec));
     if (transparent && extension_of(pattern).starts_with("jp"))
         throw ArgumentError(fmt::format("cannot record {}: JPEG has no transparency", path.string()));
-    frame_path(path, 0);
+    check_picture_fits(frame_path(path, 0), options.size.value_or(settings.image.size));
     check_folder(pattern);
 }
 

@@ -101,13 +101,15 @@ void bind_image(nb::module_& module) {
                "The array as an object with DLPack 1.0, whose flag says that it is read-only.");
     module.def(
         "check_picture_path",
-        [](const fs::path& path) {
+        [](const fs::path& path, const nb::object& size) {
             const bool linear = app::encoding_for(path) == app::Encoding::scene_linear;
+            if (!size.is_none()) app::check_picture_fits(path, to_size(size, "size"));
             check_writable(path);
             return linear;
         },
-        nb::arg("path"),
-        "Raises if an image cannot be written there; returns whether it will hold linear values.");
+        nb::arg("path"), nb::arg("size") = nb::none(),
+        "Raises if an image (of this size) cannot be written there; returns whether it will hold linear "
+        "values.");
 }
 
 }  // namespace easypbr::python

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/core/image.h"
@@ -26,6 +27,9 @@ void save_image(const Image& image, const std::filesystem::path& path);
 
 /// The bytes of a PNG file (u8 or u16 image).
 std::vector<std::byte> encode_png(const Image& image);
+
+/// Most pixels a side that save_image() writes into a file with this extension.
+int largest_image_side(std::string_view extension);
 
 /// Extensions that save_image() writes.
 std::vector<std::string> writable_image_extensions();

@@ -24,6 +24,8 @@ Image decode_exr(Bytes bytes, const std::string& name);
 /// Whether the first bytes are those of a WebP file.
 bool is_webp(Bytes bytes);
 
+/// Pixels that JPEG holds a side.
+inline constexpr int max_jpeg_side = 65500;
 /// Of files that save_image() writes.
 inline constexpr int jpeg_quality = 95;
 /// Quality 1 to 100, no chroma subsampling; alpha is dropped. u8 only.

@@ -81,6 +81,10 @@ void save_image(const Image& image, const std::filesystem::path& path) {
     write_file(path, encode_image(image, extension));
 }
 
+int largest_image_side(std::string_view extension) {
+    return extension == "jpg" || extension == "jpeg" ? max_jpeg_side : max_image_side;
+}
+
 std::vector<std::string> writable_image_extensions() {
     return {"png", "jpg", "jpeg", "hdr", "exr"};
 }

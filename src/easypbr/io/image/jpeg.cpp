@@ -15,7 +15,6 @@ namespace {
 /// CMYK.
 constexpr size_t most_jpeg_bytes_per_byte = 1024 * 4;
 /// The format's own limit.
-constexpr int max_jpeg_side = 65500;
 
 struct Destroy {
     void operator()(void* handle) const { tjDestroy(handle); }
