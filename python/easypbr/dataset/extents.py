@@ -1,5 +1,6 @@
 """The extent of meshes."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -8,19 +9,44 @@ from numpy.typing import NDArray
 from .._easypbr import Mesh
 
 
-def bounds(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Least and largest coordinates of a mesh and its children in its own frame."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    if len(mesh.V):
-        low, high = mesh.V.min(0).astype(float), mesh.V.max(0).astype(float)
+def without_offset(mesh: Mesh) -> Mesh:
+    """The mesh with offsets of zero, its own and those of its children: as a scene places it alone, whose origin is the first
+    offset of a node with vertices."""
+    origin = next((np.array(node.offset) for node in _nodes(mesh) if len(node.V)), np.zeros(3))
+    _move_offsets(mesh, np.zeros(3), origin)
+    return mesh
+
+
+def _nodes(mesh: Mesh) -> Iterator[Mesh]:
+    yield mesh
     for child in mesh.children:
-        a, b = bounds(child)
-        if not np.isfinite(a).all():
-            continue
-        corners = np.array([[x, y, z] for x in (a[0], b[0]) for y in (a[1], b[1]) for z in (a[2], b[2])])
-        corners = corners @ child.T_parent_mesh[:3, :3].T + child.T_parent_mesh[:3, 3]
-        low, high = np.minimum(low, corners.min(0)), np.maximum(high, corners.max(0))
+        yield from _nodes(child)
+
+
+def _move_offsets(mesh: Mesh, moved: NDArray[Any], origin: NDArray[Any]) -> None:
+    """Moves the offsets of all children into their poses; the mesh itself stands `moved` from its own origin."""
+    for child in mesh.children:
+        own = child.offset - origin if len(child.V) else np.zeros(3)
+        T = child.T_parent_mesh
+        T[:3, 3] += T[:3, :3] @ own - moved
+        child.T_parent_mesh = T
+        _move_offsets(child, own, origin)
+    mesh.offset = (0, 0, 0)
+
+
+def bounds(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Least and largest coordinates of a mesh and its children in its own frame; infinite without vertices."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for V in _vertices_by_node(mesh, np.eye(4)):
+        low, high = np.minimum(low, V.min(0)), np.maximum(high, V.max(0))
     return low, high
+
+
+def _vertices_by_node(mesh: Mesh, T: NDArray[Any]) -> Iterator[NDArray[Any]]:
+    if len(mesh.V):
+        yield mesh.V.astype(float) @ T[:3, :3].T + T[:3, 3]
+    for child in mesh.children:
+        yield from _vertices_by_node(child, T @ child.T_parent_mesh)
 
 
 def least_along(mesh: Mesh, direction: NDArray[Any]) -> float:
@@ -34,10 +60,7 @@ def least_along(mesh: Mesh, direction: NDArray[Any]) -> float:
 
 def vertices_of(mesh: Mesh) -> NDArray[Any]:
     """All vertices of a mesh and its children in its own frame."""
-    V = [np.asarray(mesh.V, float).reshape(-1, 3)]
-    for child in mesh.children:
-        V.append(vertices_of(child) @ child.T_parent_mesh[:3, :3].T + child.T_parent_mesh[:3, 3])
-    return np.concatenate(V)
+    return np.concatenate([np.empty((0, 3)), *_vertices_by_node(mesh, np.eye(4))])
 
 
 def fitted(mesh: Mesh, size: float, up: str) -> NDArray[Any]:

@@ -11,8 +11,9 @@ from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
 from . import content
-from .extents import bounds, diameter_of, fitted, least_along, vertices_of
+from .extents import bounds, diameter_of, fitted, least_along, vertices_of, without_offset
 from .frame import Frame, NextFrame, visible_corners
+from .kept import Kept, bytes_of
 from .lamps import random_light
 from .poses import direction, draw, rotation, turn_about
 from .spec import DatasetSpec
@@ -21,10 +22,15 @@ from .tables import ObjectSpec, SensorSpec
 #: Name of the surroundings in the scene.
 SURROUNDINGS = "surroundings"
 _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
+#: Bytes of meshes, and as many of skies, that a maker keeps.
+_MOST_KEPT = 256 << 20
+
+#: A mesh, and the least and largest coordinates in its own frame.
+Model = tuple[Mesh, NDArray[Any], NDArray[Any]]
 
 
 class FrameMaker:
-    """Draws frames of a spec. Meshes and skies are kept from frame to frame; nothing else is."""
+    """Draws frames of a spec. Meshes and skies are kept from frame to frame, up to a number of bytes; nothing else is."""
 
     classes: list[str]
 
@@ -34,39 +40,45 @@ class FrameMaker:
         self.classes = spec.class_names()
         self.skipped: list[str] = []
         self._files = [entry.files() for entry in spec.objects]
-        self._meshes: dict[str, Mesh | None] = {}
-        self._skies: dict[int, Environment] = {}
+        self._models: Kept[Model] = Kept(_MOST_KEPT)
+        self._skies: Kept[Environment] = Kept(_MOST_KEPT)
         self._surroundings: tuple[Mesh, NDArray[Any]] | None = None
         self._scene = Scene()
         self._view = Viewer(spec.image.size, {"ground.mode": "none"}, scene=self._scene)
 
-    def _mesh(self, path: str) -> Mesh | None:
-        """The file's mesh; None when it cannot be read and that is to be skipped."""
-        if path not in self._meshes:
-            try:
-                self._meshes[path] = Mesh(path)
-            except Error:
-                if self.spec.on_error == "stop":
-                    raise
-                self._meshes[path] = None
-                self.skipped.append(path)
-        return self._meshes[path]
+    def _model(self, path: str) -> Model | None:
+        """That of a file; None when it cannot be read and that is to be skipped."""
+        if path in self.skipped:
+            return None
+        known = self._models.get(path)
+        if known is not None:
+            return known
+        try:
+            mesh = without_offset(Mesh(path))
+        except Error:
+            if self.spec.on_error == "stop":
+                raise
+            self.skipped.append(path)
+            return None
+        return self._models.put(path, (mesh, *bounds(mesh)), bytes_of(mesh))
 
-    def _object(self, number: int, random: np.random.Generator) -> Mesh:
+    def _object(self, number: int, random: np.random.Generator) -> Model:
         entry = self.spec.objects[number]
         files = self._files[number]
         if not files:
             mesh = content.BUILTIN[entry.source.removeprefix("builtin:")](random)
+            low, high = bounds(mesh)
         else:
             # The order is drawn whole, so that a file that is left out does not move the others.
             order = random.permutation(len(files))
-            found = next((mesh for mesh in (self._mesh(files[i]) for i in order) if mesh is not None), None)
+            found = next((model for model in (self._model(files[i]) for i in order) if model is not None), None)
             if found is None:
                 raise ArgumentError(f"dataset: {entry.source}: none of {len(files)} files can be read")
-            mesh = found.clone()
+            kept, low, high = found
+            mesh = kept.clone()
         if entry.random_material:
             content.random_material(mesh, random)
-        return mesh
+        return mesh, low, high
 
     def make(self, index: int) -> Frame:
         """The frame. Raises ArgumentError naming the constraint that cannot be met, and what reading meshes raises."""
@@ -115,9 +127,9 @@ class FrameMaker:
             low, high = entry.count
             for _ in range(int(random.integers(low, high + 1))):
                 name = f"{len(entries):03d}"
-                mesh = self._object(number, random)
-                self._place(mesh, entry, camera, random, spheres)
-                self._scene.show(mesh, name)
+                model = self._object(number, random)
+                self._place(model, entry, camera, random, spheres)
+                self._scene.show(model[0], name)
                 entries[name] = entry
         if spec.placement.mode == "surface":
             ground = shapes.plane(4 * spec.placement.radius)
@@ -159,10 +171,12 @@ class FrameMaker:
         if given.mode == "image":
             settings["background.image"] = given.files[choice]
         if given.mode in ("sky", "environment"):
-            if choice not in self._skies:
+            sky = self._skies.get(choice)
+            if sky is None:
                 own = np.random.default_rng([self.spec.seed, 1 << 32, choice])
-                self._skies[choice] = content.sky(own) if given.mode == "sky" else Environment(load_image(given.files[choice]))
-            self._scene.environment = self._skies[choice]
+                sky = content.sky(own) if given.mode == "sky" else Environment(load_image(given.files[choice]))
+                self._skies.put(choice, sky, np.asarray(sky.to_numpy()).nbytes)
+            self._scene.environment = sky
 
     def _surround(self, random: np.random.Generator) -> None:
         given = self.spec.surroundings
@@ -170,7 +184,7 @@ class FrameMaker:
             return
         turn = turn_about(np.array([0.0, 1, 0]), np.radians(draw(random, given.turn_deg)))
         if self._surroundings is None:
-            mesh = Mesh(given.source)
+            mesh = without_offset(Mesh(given.source))
             self._surroundings = mesh, fitted(mesh, given.size, given.up)
         mesh, T = self._surroundings
         placed = np.eye(4)
@@ -186,11 +200,11 @@ class FrameMaker:
             for _ in range(int(random.integers(low, high + 1))):
                 self._scene.set_light(f"light {len(self._scene.light_names())}", random_light(given, random))
 
-    def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random: np.random.Generator, spheres: list[Any]) -> None:
+    def _place(self, model: Model, entry: ObjectSpec, camera: Camera, random: np.random.Generator, spheres: list[Any]) -> None:
         """Sets the pose so that the mesh has its size and its ball meets no other's."""
         given = self.spec.placement
         size, turn = draw(random, entry.size), rotation(entry, random)
-        low, high = bounds(mesh)
+        mesh, low, high = model
         scale = size / max(float((high - low).max()), 1e-12)
         T = np.eye(4)
         T[:3, :3] = turn * scale

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _easypbr
-from .extents import bounds
+from .extents import bounds, without_offset
 from .tables import DatasetTables
 
 
@@ -26,7 +26,7 @@ def single_model(spec: DatasetTables, class_name: str) -> tuple[str, float] | No
 def model_ply(path: str, size: float) -> bytes:
     """The mesh as large as it is shown (its longest side is `size` metres), in millimetres, as text PLY with normals and,
     where each vertex has one, colours."""
-    mesh = _easypbr.Mesh(path)
+    mesh = without_offset(_easypbr.Mesh(path))
     low, high = bounds(mesh)
     mesh.T_parent_mesh = np.diag([*[1000 * size / max(float((high - low).max()), 1e-12)] * 3, 1.0])
     mesh = mesh.merge()
