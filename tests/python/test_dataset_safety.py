@@ -12,9 +12,10 @@ import pytest
 import yaml
 
 from easypbr import ArgumentError
-from easypbr.dataset import ObjectSpec, generate
-from easypbr.dataset.folder import locked
-from test_dataset import level, small
+from easypbr.dataset import MotionSpec, ObjectSpec, generate
+from easypbr.dataset.folder import FolderWriter, locked
+from easypbr.dataset.writers import WRITERS
+from test_dataset import hashes, level, small
 
 #: What Python and the package import, and a stranger could leave beside a spec.
 MODULES = ("numpy", "json", "pickle", "random", "struct", "multiprocessing", "easypbr", "tomllib", "argparse")
@@ -155,3 +156,43 @@ def test_an_interrupted_set_ends_at_once_and_goes_on_later(command, tmp_path, wo
     assert 2 <= made < 2000
     for record in (tmp_path / "set").glob("records/*.json"):  # What counts is complete.
         assert (tmp_path / f"set/images/{record.stem}.png").exists() and (tmp_path / f"set/labels/{record.stem}.txt").exists()
+
+
+@pytest.mark.parametrize("name", ["images/own.png", "labels/000000.txt", "annotations.json", "data.yaml", "records/a", "unfinished/a",
+                                  "statistics.html"])
+def test_files_of_others_are_not_replaced(tmp_path, name):
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("mine")
+    spec = small(count=1, writers=("coco", "yolo"))
+    with pytest.raises(ArgumentError, match=f"holds '{name.split('/')[0]}', which is of no set that was begun there"):
+        generate(spec, tmp_path, workers=1)
+    assert [p.read_text() for p in tmp_path.rglob("*") if p.is_file()] == ["mine"]
+
+
+def test_folders_that_are_empty_or_of_no_writer_are_no_others(tmp_path):
+    (tmp_path / "images").mkdir()
+    (tmp_path / "notes.txt").write_text("mine")
+    generate(small(count=1, writers=("coco",)), tmp_path, workers=1)
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def test_all_files_of_writers_are_among_their_paths(tmp_path):
+    spec = level(count=1, writers=tuple(WRITERS), motion=MotionSpec(0.1, 5.0, 0.0))
+    generate(spec, tmp_path, workers=1)
+    writer = FolderWriter(spec, tmp_path, [])
+    known = {"spec.json", *writer.paths, *(name for one in writer.writers for name in one.paths)} - {"unfinished"}
+    assert {path.name for path in tmp_path.iterdir()} == known
+
+
+@pytest.mark.parametrize("damage", ["", '{"index": 1, "wid', None], ids=["empty", "cut", "no picture"])
+def test_damaged_frames_are_made_again(tmp_path, damage):
+    """What a power cut leaves."""
+    spec = small(count=2, writers=("coco", "yolo"))
+    generate(spec, tmp_path, workers=1)
+    made = hashes(tmp_path)
+    if damage is None:
+        (tmp_path / "images/000001.png").unlink()
+    else:
+        (tmp_path / "records/000001.json").write_text(damage)
+    generate(spec, tmp_path, workers=1)
+    assert hashes(tmp_path) == made

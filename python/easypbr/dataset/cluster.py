@@ -48,7 +48,7 @@ def make_range(spec: DatasetSpec, folder: Path, indices: list[int], threads: int
     _, maker, writer = _worker
     for index in indices:
         # Of a task whose worker has died some frames are there.
-        if not writer.record_path(index).exists():
+        if not writer.is_finished(index):
             writer.write_frame(maker.make(index))
     return maker.skipped
 

@@ -35,6 +35,8 @@ class FolderWriter:
 
     base: Writer
     writers: list[Writer]
+    #: Those that are written whatever the writers are.
+    paths = ("images", "records", "unfinished", "statistics.html", "contact_sheet.png")
 
     def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
         self.folder = folder
@@ -43,6 +45,14 @@ class FolderWriter:
 
     def record_path(self, index: int) -> Path:
         return self.folder / "records" / f"{index:06d}.json"
+
+    def is_finished(self, index: int) -> bool:
+        """Whether the frame counts: its record is whole and its picture there. A power cut may leave files empty."""
+        try:
+            json.loads(self.record_path(index).read_bytes())
+            return (self.folder / self.base.picture(index)).stat().st_size > 0
+        except (OSError, ValueError):
+            return False
 
     def write_frame(self, frame: Frame) -> None:
         picture = self.folder / self.base.picture(frame.index)
@@ -130,7 +140,8 @@ def _take(file: int, path: Path) -> bool:
 
 def claim(spec: DatasetSpec, folder: Path) -> None:
     """Writes the spec into the folder, or compares it with the one that is there. One of which no picture has been made, as
-    when a file was not found, is replaced. Names of files are compared, and written, as absolute ones."""
+    when a file was not found, is replaced. Names of files are compared, and written, as absolute ones. Raises ArgumentError
+    where the folder holds another set, or files of others that would be replaced."""
     values = with_absolute_files(json.loads(json.dumps(dataclasses.asdict(spec), allow_nan=False)))
     path = folder / "spec.json"
     if path.exists():
@@ -143,7 +154,18 @@ def claim(spec: DatasetSpec, folder: Path) -> None:
         begun = any(any((folder / name).glob("*")) for name in ("images", "records"))
         if begun or known is None:
             raise ArgumentError(f"dataset: {folder} holds a set of another spec or count: choose another folder, or remove it")
-    FolderWriter(spec, folder, []).put("spec.json", (json.dumps(values, indent=1) + "\n").encode())
+    writer = FolderWriter(spec, folder, [])
+    own = {"unfinished"} if path.exists() else set()
+    for name in (*writer.paths, *(name for format_writer in writer.writers for name in format_writer.paths)):
+        if name not in own and _holds(folder / name):
+            raise ArgumentError(f"dataset: {folder} holds '{name}', which is of no set that was begun there: choose another "
+                                "folder, or move it away")
+    writer.put("spec.json", (json.dumps(values, indent=1) + "\n").encode())
+
+
+def _holds(path: Path) -> bool:
+    """Whether there is a file, or a folder that is not empty."""
+    return any(path.iterdir()) if path.is_dir() else os.path.lexists(path)
 
 
 def with_absolute_files(values: dict[str, Any]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import shutil
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +54,7 @@ def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool,
               threads: int | None) -> dict[str, Any]:
     claim(spec, folder)
     shutil.rmtree(folder / "unfinished", ignore_errors=True)
-    missing = [i for i in range(spec.count) if not (folder / "records" / f"{i:06d}.json").exists()]
+    missing = _missing(spec, folder, range(spec.count))
     progress = _Progress(spec.count, spec.count - len(missing), quiet)
     if not missing:
         skipped: set[str] = set()
@@ -70,6 +70,12 @@ def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool,
     statistics = _finish(spec, folder)
     statistics["skipped"] = sorted(skipped)
     return statistics
+
+
+def _missing(spec: DatasetSpec, folder: Path, indices: Iterable[int]) -> list[int]:
+    """Those of these frames that are to be made."""
+    writer = FolderWriter(spec, folder, [])
+    return [index for index in indices if not writer.is_finished(index)]
 
 
 def _check_engine(engine: str, address: str | None, workers: int | None, threads: int | None) -> None:
@@ -181,7 +187,7 @@ def _make_apart(spec: DatasetSpec, folder: Path, missing: list[int], workers: in
                     raise
             return skipped
         except concurrent.futures.process.BrokenProcessPool:
-            rest = {index for index in rest if not (folder / "records" / f"{index:06d}.json").exists()}
+            rest = set(_missing(spec, folder, rest))
             if attempt == _RETRIES:
                 raise ArgumentError(f"dataset: workers died {attempt + 1} times; {len(rest)} frames are missing: "
                                     "is there enough memory? Try fewer workers") from None

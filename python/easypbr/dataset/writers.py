@@ -57,6 +57,8 @@ class Writer:
     image_format: str
     classes: list[str]
     spec: DatasetTables
+    #: Files and folders in the set's folder that all of its files are among.
+    paths: tuple[str, ...] = ()
 
     def __init__(self, image_format: str, classes: list[str], spec: DatasetTables | None = None) -> None:
         self.image_format, self.classes, self.spec = image_format, classes, spec or DatasetTables()
@@ -81,6 +83,8 @@ class Writer:
 class Coco(Writer):
     """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints: of visibility 2, of 1 behind
     what the picture shows, of 0 beyond it."""
+
+    paths = ("annotations.json",)
 
     def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         images: list[dict[str, Any]] = []
@@ -115,6 +119,8 @@ class Coco(Writer):
 
 class Yolo(Writer):
     """labels/*.txt: class, centre and size of the box as parts of the picture; data.yaml."""
+
+    paths = ("labels", "data.yaml")
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         height, width = frame.depth.shape
@@ -153,6 +159,8 @@ def _number(value: Range) -> str:
 class Kitti(Writer):
     """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m). Boxes turn about the camera's y axis
     alone: cameras are level, annotated objects upright."""
+
+    paths = ("kitti",)
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
@@ -202,6 +210,8 @@ class Flow(Writer):
     """Optical flow as KITTI has it: image_2/*_10.png and *_11.png, flow_occ (all points) and flow_noc (those that the second
     picture shows too): uint16, 64 x pixels + 32768, the third channel 1 where there is a value."""
 
+    paths = ("kitti_flow",)
+
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
         if not spec.motion:
@@ -227,6 +237,7 @@ def encode_flow(flow: NDArray[Any], valid: NDArray[Any]) -> NDArray[Any]:
 class Bop(Writer):
     """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info, models_info."""
 
+    paths = ("bop",)
     scale: float
 
     scale = 1.0  # millimetres of a unit of depth: up to 65 m
@@ -297,6 +308,8 @@ def _has_skew(spec: DatasetTables) -> bool:
 class Nerfstudio(Writer):
     """transforms.json: poses with OpenGL's axes, the lens's coefficients."""
 
+    paths = ("transforms.json",)
+
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
         if _has_skew(spec) or (spec.camera.distortion_model != "fisheye" and len(spec.camera.distortion) > 5):
@@ -322,6 +335,8 @@ class Nerfstudio(Writer):
 
 class Colmap(Writer):
     """sparse/0/cameras.txt, images.txt and an empty points3D.txt."""
+
+    paths = ("sparse",)
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
@@ -365,6 +380,7 @@ def quaternion(R: NDArray[Any]) -> NDArray[Any]:
 class WebDataset(Writer):
     """shards/*.tar of up to 1000 samples: the picture and its annotation."""
 
+    paths = ("shards",)
     per_shard = 1000
 
     def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
@@ -386,6 +402,8 @@ class WebDataset(Writer):
 class Raw(Writer):
     """raw/*.npz: depth, normals, instance ids, K, T_world_cam; with motion, flow and occlusion."""
 
+    paths = ("raw",)
+
     def frame(self, frame: Frame) -> dict[str, bytes]:
         buffer = io.BytesIO()
         moved = {} if frame.next is None else {"flow_forward": frame.next.flow, "occlusion_forward": frame.next.occluded}
@@ -397,6 +415,8 @@ class Raw(Writer):
 class Exr(Writer):
     """exr/depth, exr/normal, exr/id: float32, without loss."""
 
+    paths = ("exr",)
+
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}.exr"
         return {f"exr/depth/{name}": _exr(frame.depth), f"exr/normal/{name}": _exr(frame.normal),
@@ -405,6 +425,8 @@ class Exr(Writer):
 
 class Png(Writer):
     """depth/*.png (uint16, millimetres), normals/*.png and ids/*.png (uint16): what a fast loader reads."""
+
+    paths = ("depth", "normals", "ids")
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
