@@ -143,7 +143,8 @@ def test_kitti(tmp_path):
         name = f"{record['index']:06d}"
         lines = (tmp_path / f"set/kitti/label_2/{name}.txt").read_text().splitlines()
         seen = [entry for entry in record["objects"] if entry["box"][2] > 0]
-        P = np.array((tmp_path / f"set/kitti/calib/{name}.txt").read_text().split()[1:], float).reshape(3, 4)
+        calib = [line.split(": ") for line in (tmp_path / f"set/kitti/calib/{name}.txt").read_text().splitlines()]
+        P = np.array(dict(calib)["P2"].split(), float).reshape(3, 4)
         assert len(lines) == len(seen) > 0
         for line, entry in zip(lines, seen):
             fields = line.split()

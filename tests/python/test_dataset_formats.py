@@ -2,17 +2,29 @@
 
 import io
 import json
+import pathlib
 import tarfile
 
 import numpy as np
 import pytest
 import trimesh
+import yaml
 from test_dataset import level, records, small
 from test_ground_truth import brown, fisheye
 
 import easypbr
 from easypbr import ArgumentError, Mesh, shapes
-from easypbr.dataset import CameraSpec, DatasetSpec, LightSpec, MotionSpec, ObjectSpec, OcclusionSpec, SensorSpec, generate
+from easypbr.dataset import (
+    CameraSpec,
+    DatasetSpec,
+    LightSpec,
+    MotionSpec,
+    ObjectSpec,
+    OcclusionSpec,
+    PlacementSpec,
+    SensorSpec,
+    generate,
+)
 from easypbr.dataset.extents import diameter_of
 from easypbr.dataset.frame import visible_corners
 from easypbr.dataset.frames import FrameMaker
@@ -358,3 +370,39 @@ def test_bad_lights_motion_and_sensors(tmp_path, text, message):
     (tmp_path / "spec.toml").write_text(text)
     with pytest.raises(ArgumentError, match=message):
         DatasetSpec.from_toml(tmp_path / "spec.toml")
+
+
+def test_calibrations_are_kittis(tmp_path):
+    """By lines, as OpenPCDet reads them, and by names."""
+    generate(level(count=1), tmp_path, workers=1)
+    lines = (tmp_path / "kitti/calib/000000.txt").read_text().splitlines()
+    assert [line.partition(":")[0] for line in lines] == ["P0", "P1", "P2", "P3", "R0_rect", "Tr_velo_to_cam", "Tr_imu_to_velo"]
+    values = [np.array(line.strip().split(" ")[1:], np.float64) for line in lines]
+    P, R, T = values[2].reshape(3, 4), values[4].reshape(3, 3), values[5].reshape(3, 4)
+    np.testing.assert_allclose(P[:, :3], records(tmp_path)[0]["K"])
+    ahead, left = P @ [*R @ T @ [10, 0, 0, 1], 1], P @ [*R @ T @ [10, 1, 0, 1], 1]
+    np.testing.assert_allclose([*ahead[:2] / ahead[2], left[2]], [*P[:2, 2], 10])
+    assert left[0] < ahead[0] and left[1] == ahead[1]
+    picture = easypbr.load_image(tmp_path / "kitti/image_2/000000.png")
+    np.testing.assert_array_equal(picture, easypbr.load_image(tmp_path / "images/000000.png"))
+
+
+@pytest.mark.parametrize("distance, scale", [(20.0, 1), (80.0, 2)])
+def test_bop_depths_reach_the_farthest_object(tmp_path, distance, scale):
+    drone = ObjectSpec(class_name="drone", size=10.0)
+    spec = small(count=1, objects=[drone], writers=("bop", "raw"), placement=PlacementSpec(distance=distance))
+    generate(spec, tmp_path, workers=1)
+    base = tmp_path / "bop/000000"
+    camera, info = (json.loads((base / f"scene_{name}.json").read_text())["0"] for name in ("camera", "gt_info"))
+    depth = easypbr.load_image(base / "depth/000000.png") * camera["depth_scale"] / 1000
+    assert camera["depth_scale"] == scale
+    np.testing.assert_allclose(depth, np.load(tmp_path / "raw/000000.npz")["depth"], atol=scale * 0.00051)
+    assert np.count_nonzero(depth[easypbr.load_image(base / "mask/000000_000000.png") > 0]) == info[0]["px_count_valid"] > 10
+
+
+def test_yolo_sets_are_found_from_any_folder(tmp_path):
+    """Ultralytics takes the folder of the file where it has no path, and the current one for "."."""
+    generate(small(count=1, writers=("yolo",)), tmp_path, workers=1)
+    data = yaml.safe_load((tmp_path / "data.yaml").read_text())
+    root = pathlib.Path(data.get("path") or (tmp_path / "data.yaml").parent)
+    assert (root / data["train"] / "000000.png").exists() and (root / data["val"]).samefile(tmp_path / "images")

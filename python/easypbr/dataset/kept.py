@@ -9,7 +9,7 @@ Value = TypeVar("Value")
 
 
 class Kept(Generic[Value]):
-    """Values by key, of `most` bytes in all: the one that was not asked for the longest is given up first, the last one never."""
+    """Values by key, of `most` bytes in all: the one that was asked for the longest ago is given up first, the last one never."""
 
     def __init__(self, most: int) -> None:
         self._most, self._bytes = most, 0

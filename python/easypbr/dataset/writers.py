@@ -135,7 +135,8 @@ class Yolo(Writer):
     def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         # JSON's texts are YAML's too: a name may look like a number or hold a colon.
         names = "".join(f"  {i}: {json.dumps(name, ensure_ascii=False)}\n" for i, name in enumerate(self.classes))
-        return {"data.yaml": f"path: .\ntrain: images\nval: images\nnames:\n{names}".encode()}
+        # Without a path the folder of the file counts; "." would be the current one.
+        return {"data.yaml": f"train: images\nval: images\nnames:\n{names}".encode()}
 
 
 def _what_tilts(spec: DatasetTables) -> Iterator[str]:
@@ -157,8 +158,8 @@ def _number(value: Range) -> str:
 
 
 class Kitti(Writer):
-    """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m). Boxes turn about the camera's y axis
-    alone: cameras are level, annotated objects upright."""
+    """image_2/*.png, label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m). Boxes turn about the
+    camera's y axis alone: cameras are level, annotated objects upright."""
 
     paths = ("kitti",)
 
@@ -173,14 +174,22 @@ class Kitti(Writer):
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}"
-        P = np.c_[frame.K, np.zeros(3)]
-        calib = f"P2: {' '.join(f'{value:.12e}' for value in P.ravel())}\n"
+        calib = "".join(f"{key}: {' '.join(f'{value:.12e}' for value in np.ravel(matrix))}\n"
+                        for key, matrix in self._calibration(frame.K).items())
         # 0: no depth; farther than 65535 / 256 m is none either.
         depth = np.rint(frame.depth * 256)
         depth = np.where(depth < 65536, depth, 0).astype(np.uint16)
         labels = "".join(self._line(entry) for entry in frame.objects if entry["box"][2] > 0)
         return {f"kitti/label_2/{name}.txt": labels.encode(), f"kitti/calib/{name}.txt": calib.encode(),
-                f"kitti/depth/{name}.png": save16(depth)}
+                f"kitti/image_2/{name}.png": _png(frame.picture), f"kitti/depth/{name}.png": save16(depth)}
+
+    @staticmethod
+    def _calibration(K: NDArray[Any]) -> dict[str, NDArray[Any]]:
+        """All matrices that readers ask for, by line or by name. The four cameras are one, where a laser scanner (x forward, y left,
+        z up) and the inertial unit stand, too."""
+        P = np.c_[K, np.zeros(3)]
+        T_cam_velo = np.array([[0.0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0]])
+        return {"P0": P, "P1": P, "P2": P, "P3": P, "R0_rect": np.eye(3), "Tr_velo_to_cam": T_cam_velo, "Tr_imu_to_velo": np.eye(3, 4)}
 
     @staticmethod
     def _line(entry: dict[str, Any]) -> str:
@@ -238,13 +247,10 @@ class Bop(Writer):
     """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info, models_info."""
 
     paths = ("bop",)
-    scale: float
-
-    scale = 1.0  # millimetres of a unit of depth: up to 65 m
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name, base = f"{frame.index:06d}", "bop/000000"
-        depth = np.rint(frame.depth * 1000 / self.scale)
+        depth = np.rint(frame.depth * 1000 / self._depth_scale(frame.objects))
         files = {f"{base}/depth/{name}.png": save16(np.where(depth < 65536, depth, 0).astype(np.uint16)),
                  f"{base}/rgb/{name}.png": _png(frame.picture)}
         for i, entry in enumerate(frame.objects):
@@ -258,7 +264,7 @@ class Bop(Writer):
         for record in records:
             T_cam_world = np.linalg.inv(record["T_world_cam"])
             key = str(record["index"])
-            camera[key] = {"cam_K": np.ravel(record["K"]).tolist(), "depth_scale": self.scale,
+            camera[key] = {"cam_K": np.ravel(record["K"]).tolist(), "depth_scale": self._depth_scale(record["objects"]),
                            "cam_R_w2c": T_cam_world[:3, :3].ravel().tolist(), "cam_t_w2c": (1000 * T_cam_world[:3, 3]).tolist()}
             if record["distortion"]:  # BOP has no key for a lens: these are ours.
                 camera[key] |= {"cam_dist": record["distortion"], "cam_dist_model": record["distortion_model"]}
@@ -267,6 +273,12 @@ class Bop(Writer):
         base = "bop/000000"
         return {f"{base}/scene_camera.json": _json(camera), f"{base}/scene_gt.json": _json(truth),
                 f"{base}/scene_gt_info.json": _json(info), **self._models(truth)}
+
+    @staticmethod
+    def _depth_scale(objects: list[dict[str, Any]]) -> float:
+        """Millimetres of a unit of depth in a frame: as many as 16 bits need to hold all annotated objects."""
+        farthest = max((corner[2] for entry in objects for corner in entry["corners_cam"]), default=0)
+        return float(max(1, np.ceil(1000 * farthest / 65535)))
 
     @staticmethod
     def _pose(entry: dict[str, Any]) -> dict[str, Any]:
