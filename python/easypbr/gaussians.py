@@ -30,7 +30,8 @@ def splats(
     `means` is n x 3. `scales` are standard deviations along the Gaussians' own axes: n x 3, n x 2 of flat ones, or one
     number for each. `quaternions` (n x 4: w, x, y, z) turn the axes; by default they are those of the world.
     `opacities` are 0 to 1. `sh` holds spherical harmonics of degree 0 to 3, n x (degree + 1)^2 x 3, as gsplat and the
-    reference implementation have them; or give `colors`, n x 3 sRGB values from 0 to 1, the same from all directions.
+    reference implementation have them; or give `colors`, n x 3 sRGB values, the same from all directions, of the types and
+    ranges that Mesh.C takes: 0 to 1, 0 to 255, uint8 or uint16.
     With `raw`, scales and opacities are what is trained: logarithms, and values before the sigmoid. All may be numpy
     arrays or tensors.
     """
@@ -46,7 +47,7 @@ def splats(
         scales=_scales(_floats(scales), count, raw),
         rotations=np.tile([1.0, 0, 0, 0], (count, 1)) if quaternions is None else as_numpy(quaternions),
         opacities=_opacities(_floats(opacities), count, raw),
-        sh=as_numpy(sh) if sh is not None else (_floats(colors).reshape(count, -1) - 0.5) / CONSTANT,
+        sh=as_numpy(sh) if sh is not None else _harmonics(np.asarray(as_numpy(colors)), count),
     )
     mesh.name = "splats"
     return mesh
@@ -99,6 +100,15 @@ def _floats(values: Any) -> NDArray[Any]:
 
 def _shape(array: NDArray[Any]) -> str:
     return " x ".join(map(str, array.shape)) or "one number"
+
+
+def _harmonics(colors: NDArray[Any], count: int) -> NDArray[Any]:
+    if colors.ndim == 1 and count == 1:
+        colors = colors[None]
+    if colors.shape != (count, 3):
+        advice = ": transparency is given by opacities" if colors.shape == (count, 4) else ""
+        raise ArgumentError(f"splats: expected colors of {count} x 3, got {_shape(colors)}{advice}")
+    return (_easypbr.unit_colors(colors).astype(np.float64) - 0.5) / CONSTANT
 
 
 def _scales(scales: NDArray[Any], count: int, raw: bool) -> NDArray[Any]:

@@ -40,9 +40,28 @@ def test_tensors():
     assert mesh.sh.shape == (2, 12)
 
 
+@pytest.mark.parametrize("dtype, white", [("f8", 1), ("f4", 255), ("i8", 255), ("u1", 255), ("u2", 65535)])
+def test_colors_of_every_range(dtype, white):
+    """As Mesh.C has them: (Mesh.C - 1/2) divided by the harmonic of degree 0."""
+    colors = (np.array([[0, 0.2, 1], [0.4, 0.6, 0.8]]) * white).astype(dtype)
+    mesh = splats([[0, 0, 0], [1, 0, 0]], 0.1, colors=colors)
+    plain = Mesh([[0, 0, 0], [1, 0, 0]])
+    plain.C = colors
+    assert np.allclose(mesh.sh, (plain.C - 0.5) * np.sqrt(4 * np.pi), atol=1e-6) and np.isclose(plain.C[0, 2], 1)
+
+
+def test_none():
+    for given in (dict(colors=np.zeros((0, 3))), dict(sh=np.zeros((0, 16, 3)))):
+        mesh = splats(np.zeros((0, 3)), np.zeros((0, 3)), **given)
+        assert mesh.V.shape == (0, 3) and len(mesh.sh) == 0
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [
+        (dict(means=[[0, 0, 0]], scales=1, colors=[[1, 1, 1, 1]]), "colors of 1 x 3, got 1 x 4: transparency is given by opacities"),
+        (dict(means=[[0, 0, 0]], scales=1, colors=[[1, 1, 1]] * 2), "colors of 1 x 3, got 2 x 3"),
+        (dict(means=[[0, 0, 0]], scales=1, colors=[[300, 1, 1]]), "colours: expected 0 to 1 or 0 to 255"),
         (dict(means=[[0, 0]], scales=1, colors=[[1, 1, 1]]), "means of n x 3"),
         (dict(means=[[0, 0, 0]], scales=[[1, 1, 1, 1]], colors=[[1, 1, 1]]), "scales"),
         (dict(means=[[0, 0, 0]], scales=1), "one of sh and colors"),
