@@ -159,17 +159,53 @@ def _is_torch(what: Any) -> bool:
 
 def as_numpy(what: Any) -> Any:
     """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
-    device, with or without gradients, or any object with DLPack. Other objects are returned unchanged."""
+    device, with or without gradients, or any object with DLPack. bfloat16 and other short floats that numpy lacks become
+    float32, and masked values NaN. Other objects are returned unchanged. Raises ArgumentError for tensors that are no
+    numpy array, and for masked values that are no floats."""
     if _is_torch(what) and hasattr(what, "detach"):
-        return what.detach().cpu().numpy()
-    if isinstance(what, np.ndarray) or not hasattr(what, "__dlpack__"):
+        return _of_tensor(what)
+    if isinstance(what, np.ma.MaskedArray):
+        return _unmasked(what)
+    if isinstance(what, np.ndarray):
+        return _known(what)
+    if not hasattr(what, "__dlpack__"):
         return what
     device = what.__dlpack_device__()[0] if hasattr(what, "__dlpack_device__") else 1
     if device in (1, 3):  # The memory of the CPU, pinned or not.
-        return np.from_dlpack(what)
+        try:
+            return np.from_dlpack(what)
+        except (BufferError, RuntimeError, TypeError):
+            if not hasattr(what, "__array__"):
+                raise
     if hasattr(what, "get"):  # CuPy
         return what.get()
-    return np.asarray(what)
+    return _known(np.asarray(what))
+
+
+def _of_tensor(tensor: Any) -> NDArray[Any]:
+    try:
+        tensor = tensor.detach().cpu()
+        is_short = tensor.is_floating_point() and str(tensor.dtype) not in ("torch.float16", "torch.float32", "torch.float64")
+        array: NDArray[Any] = (tensor.float() if is_short else tensor).numpy()
+        return array
+    except (TypeError, RuntimeError) as error:
+        raise ArgumentError(f"a tensor of {tensor.dtype}, {tensor.layout}: expected numbers that numpy has: {error}") from None
+
+
+def _unmasked(array: Any) -> NDArray[Any]:
+    count = int(np.count_nonzero(np.ma.getmaskarray(array))) if array.dtype.names is None else 0
+    if count == 0:
+        return np.ma.getdata(array)
+    if array.dtype.kind != "f":
+        raise ArgumentError(f"a masked array of {array.dtype} with {count} masked values: expected floats, whose masked values become "
+                            "NaN, as of array.astype(float), or array.filled(value)")
+    filled: NDArray[Any] = array.filled(np.nan)
+    return filled
+
+
+def _known(array: NDArray[Any]) -> NDArray[Any]:
+    """Numbers of the package ml_dtypes, which JAX uses, as float32."""
+    return array.astype(np.float32) if array.dtype.type.__module__ == "ml_dtypes" else array
 
 
 def eigen2tensor(array: Any, device: str | None = None) -> Any:

@@ -194,6 +194,47 @@ def test_tables_with_x_y_z(caplog):
         as_mesh(frame({"a": POINTS[:, 0], "b": POINTS[:, 1]}))
 
 
+def test_columns_of_flags():
+    """As 0 and 1, whatever they are called."""
+    flags = np.arange(40) % 3 == 0
+    columns = dict(zip("xyz", POINTS.T)) | {"ground": flags, "r": flags, "intensity": flags, "label": flags}
+    mesh = as_mesh(frame(columns))
+    for values in (mesh.scalars["ground"], mesh.scalars["r"], mesh.I, mesh.L):
+        np.testing.assert_array_equal(values, flags)
+
+
+# Masked arrays.
+
+
+def test_masked_values_are_missing(caplog):
+    """NaN, as in what a mesh stores; rows of a cloud without a position are left out."""
+    points = np.ma.masked_less(POINTS, 0.1)
+    kept = ~np.ma.getmaskarray(points).any(axis=1)
+    for mesh in (as_mesh(points), as_mesh({"points": points}), Mesh(points)):
+        np.testing.assert_allclose(mesh.V, POINTS[kept], atol=1e-7)
+    assert f"{40 - kept.sum()} of 40 points have no finite position" in caplog.text
+    heat = np.ma.masked_greater(POINTS[:, 0], 0.5)
+    mesh = as_mesh({"points": POINTS, "heat": heat})
+    mesh.add_scalar("again", heat)
+    for values in mesh.scalars.values():
+        np.testing.assert_array_equal(np.isnan(values), heat.mask)
+    np.testing.assert_allclose(as_mesh(np.ma.array(POINTS)).V, POINTS, atol=1e-7)
+
+
+def test_masked_whole_numbers_are_refused():
+    labels = np.ma.masked_less(np.arange(40), 3)
+    message = r"a masked array of int64 with 3 masked values: expected floats, whose masked values become NaN.*array.filled\(value\)"
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        as_mesh({"points": POINTS, "labels": labels})
+    mesh = Mesh(POINTS)
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        mesh.L = labels
+    with pytest.raises(easypbr.ArgumentError, match="masked array of bool with 3 masked"):
+        mesh.L = np.ma.array(np.zeros(40, bool), mask=labels.mask)
+    mesh.L = np.ma.array(np.arange(40))
+    np.testing.assert_array_equal(mesh.L, np.arange(40))
+
+
 # Arrays of other libraries.
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from easypbr import ArgumentError, FileError, Mesh, MeshLoader, Scene, Viewer, eigen2tensor, shapes, tensor2eigen
+from easypbr import ArgumentError, FileError, Mesh, MeshLoader, Scene, Viewer, as_mesh, eigen2tensor, shapes, tensor2eigen
 
 
 class OnlyDlpack:
@@ -53,6 +53,29 @@ def test_tensors_are_taken_everywhere():
         mesh.L = torch.zeros(3, 5, requires_grad=True)
     with pytest.raises(ArgumentError, match="argmax"):
         mesh.L = tensor2eigen(torch.zeros(3, 5, requires_grad=True))
+
+
+def test_short_floats_become_float32():
+    """numpy has no bfloat16."""
+    V = torch.tensor([[0.5, 1, 2], [3, 4, 5], [6, 7.5, 8]])
+    short = V.to(torch.bfloat16).requires_grad_()
+    mesh = as_mesh(short)
+    mesh.C = (V / 16).to(torch.bfloat16)
+    for values in (mesh.V, 16 * mesh.C, Mesh(short).V, tensor2eigen(short), eigen2tensor(short)):
+        np.testing.assert_array_equal(values, V)
+    assert eigen2tensor(short).dtype == torch.float32 and tensor2eigen(V.half()).dtype == np.float16
+
+
+@pytest.mark.parametrize("tensor, message", [
+    (torch.eye(3).to_sparse(), "a tensor of torch.float32, torch.sparse_coo: expected numbers that numpy has: "),
+    (torch.empty((3, 3), device="meta"), "a tensor of torch.float32, torch.strided: .*no data"),
+    (torch.quantize_per_tensor(torch.eye(3), 0.01, 0, torch.quint8), "a tensor of torch.quint8, torch.strided: "),
+])
+def test_tensors_that_are_no_arrays_are_named(tensor, message):
+    for take in (as_mesh, tensor2eigen, Mesh):
+        with pytest.raises(ArgumentError, match=message) as caught:
+            take(tensor)
+        assert "Traceback" not in str(caught.value)
 
 
 def test_eigen2tensor_may_be_written_to():

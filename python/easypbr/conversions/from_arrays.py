@@ -173,13 +173,15 @@ def of_table(what: Any, make: Maker) -> Mesh:
     words = []
     for word in what.columns:
         values = np.asarray(what[word])
+        if values.dtype.kind == "b":
+            values = values.astype(np.float32)
         name = _COLUMNS.get(str(word).strip().lower())
-        if values.dtype.kind not in "biuf":
+        if values.dtype.kind not in "iuf":
             words.append(str(word))
         elif name is not None and name not in columns:
             columns[name] = values
         else:
-            scalars[str(word)] = values.astype(np.float32) if values.dtype.kind == "b" else values
+            scalars[str(word)] = values
     if not {"x", "y", "z"} <= set(columns):
         raise ArgumentError(f"a table: expected columns x, y and z, got {', '.join(map(str, what.columns)) or 'none'}")
     if words:

@@ -185,13 +185,14 @@ Eigen::MatrixXd exact_matrix(nb::handle object, int rows, int cols, const char* 
 nb::object numpy_array(nb::handle object, const char* what) {
     const nb::module_ numpy = nb::module_::import_("numpy");
     try {
-        // Tensors of other libraries, with gradients or on another device; numpy's own scalars and arrays
-        // pass.
-        if (nb::hasattr(object, "__dlpack__") && !nb::hasattr(object, "__array_interface__"))
+        // Tensors of other libraries, with gradients or on another device, and masked arrays; numpy's own
+        // scalars and arrays pass.
+        if (nb::hasattr(object, "__dlpack__") && !object.type().is(numpy.attr("ndarray")))
             return numpy.attr("asarray")(nb::module_::import_("easypbr.tensors").attr("as_numpy")(object));
         return numpy.attr("asarray")(object);
     } catch (nb::python_error& error) {
-        throw ArgumentError(fmt::format("{}: expected an array of numbers: {}", what, error.what()));
+        throw ArgumentError(
+            fmt::format("{}: expected an array of numbers: {}", what, nb::str(error.value()).c_str()));
     }
 }
 

@@ -36,7 +36,8 @@ void refuse_scores(nb::handle object) {
 
 nb::object flags_as_numbers(nb::handle object) {
     if (!nb::hasattr(object, "dtype")) return nb::borrow(object);
-    const nb::object array = nb::module_::import_("numpy").attr("asarray")(object);
+    const nb::object numbers = nb::module_::import_("easypbr.tensors").attr("as_numpy")(object);
+    const nb::object array = nb::module_::import_("numpy").attr("asarray")(numbers);
     const bool flags = nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b";
     return flags ? array.attr("astype")("int32") : nb::borrow(object);
 }
