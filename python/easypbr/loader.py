@@ -48,6 +48,11 @@ class MeshLoader:
     def __new__(cls, *arguments: Any, **options: Any) -> "MeshLoader":
         return super().__new__(_with_torch(cls))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The class that is derived from torch's too has no name to be found by.
+        cls = next(cls for cls in type(self).__mro__ if "_is_derived" not in vars(cls))
+        return _restored, (cls, self.__dict__)
+
     def __len__(self) -> int:
         return len(self.paths)
 
@@ -70,7 +75,14 @@ def _with_torch(cls: type) -> type:
     data = getattr(sys.modules.get("torch"), "utils", None)
     if data is None or not hasattr(data, "data") or issubclass(cls, data.data.IterableDataset):
         return cls
-    return type(cls.__name__, (cls, data.data.IterableDataset), {"__module__": cls.__module__})
+    return type(cls.__name__, (cls, data.data.IterableDataset), {"__module__": cls.__module__, "_is_derived": True})
+
+
+def _restored(cls: type[MeshLoader], members: dict[str, Any]) -> MeshLoader:
+    """A loader as it was sent to another process."""
+    loader = cls.__new__(cls)
+    loader.__dict__.update(members)
+    return loader
 
 
 def _own_share(paths: list[Any]) -> list[Any]:

@@ -113,6 +113,24 @@ def test_loader_keeps_the_order(files):
     assert len(batches) == 6 and isinstance(batches[0]["V"], torch.Tensor)
 
 
+@pytest.mark.parametrize("method", ["spawn", "forkserver"])
+def test_loader_goes_to_workers_that_are_started_anew(files, method):
+    """Each has its own share of the files."""
+    loader = MeshLoader(files, transform=count_vertices)
+    workers = torch.utils.data.DataLoader(loader, batch_size=None, num_workers=2, multiprocessing_context=method)
+    assert list(workers) == [len(Mesh(path).V) for path in files]
+    other = pickle.loads(pickle.dumps(Derived(files)))
+    assert type(other).__mro__[1] is Derived and isinstance(other, torch.utils.data.IterableDataset) and len(other) == 6
+
+
+class Derived(MeshLoader):
+    """A loader of a user's own."""
+
+
+def count_vertices(mesh):
+    return len(mesh.V)
+
+
 def test_loader_raises_at_the_sample(files):
     files[2].unlink()
     samples = iter(MeshLoader(files))
