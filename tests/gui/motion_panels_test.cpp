@@ -280,6 +280,38 @@ TEST_F(MotionPanels, WhatCannotBeRecordedIsTold) {
     EXPECT_TRUE(fs::exists(folder_ / "stopped_00.png"));
 }
 
+TEST_F(MotionPanels, ARecordingThatFailsEndsAndLeavesAWholeFile) {
+    unfold(Panel::recorder);
+    settle();
+    app::RecordingForm& form = view_.drawing().recording_form();
+    form.video = (folder_ / "panels_%03d.png").string();
+    form.panels = true;
+    view_.drawing().wishes().recording = app::LiveWishes::Recording::video;
+    step();
+    ASSERT_TRUE(view_.is_recording()) << view_.drawing().report().text;
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (view_.is_recording() && std::chrono::steady_clock::now() < patience)
+        view_.update({}, size + Vec2i(20, 0), 1, 0.05);
+    EXPECT_FALSE(view_.is_recording());
+    EXPECT_FALSE(recorder_.is_recording());
+    EXPECT_TRUE(view_.drawing().report().failed);
+    EXPECT_NE(view_.drawing().report().text.find("resized"), std::string::npos)
+        << view_.drawing().report().text;
+    EXPECT_TRUE(fs::exists(folder_ / "panels_000.png"));
+    // What cannot be drawn ends one too, and another one can begin.
+    form = {.video = (folder_ / "empty_%03d.png").string(), .size = {32, 24}};
+    for (int i = 0; i < 2; ++i) {
+        view_.drawing().wishes().recording = app::LiveWishes::Recording::video;
+        step();
+        ASSERT_TRUE(view_.is_recording()) << view_.drawing().report().text;
+        session_.settings().background.mode = BackgroundMode::image;
+        while (view_.is_recording() && std::chrono::steady_clock::now() < patience) step();
+        EXPECT_FALSE(recorder_.is_recording());
+        EXPECT_TRUE(view_.drawing().report().failed);
+        session_.settings().background.mode = BackgroundMode::color;
+    }
+}
+
 TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     AnimationNode node;
     node.mesh = session_.scene().get("ball");

@@ -1,5 +1,8 @@
 #include "easypbr/app/live_recording.h"
 
+#include <fmt/format.h>
+
+#include <exception>
 #include <utility>
 
 #include "easypbr/app/output.h"
@@ -32,6 +35,16 @@ class WithoutBackground {
 Vec2i recording_size(const RecordingForm& form, Vec2i window, const Settings& settings) {
     if (form.panels) return window;
     return form.size.minCoeff() > 0 ? form.size : settings.image.size;
+}
+
+/// A frame with panels. Throws when the window no longer has the size of the recording.
+Image panels_frame(const LiveRecording::Screen& screen, Vec2i size, const std::string& file) {
+    Image frame = screen();
+    if (frame.width() != size.x() || frame.height() != size.y())
+        throw ArgumentError(
+            fmt::format("{} ends here: the window was resized from {}x{} to {}x{} during its recording", file,
+                        size.x(), size.y(), frame.width(), frame.height()));
+    return frame;
 }
 
 }  // namespace
@@ -83,7 +96,7 @@ void LiveRecording::add_path_frame(const Screen& finished) {
     const double time = running_->times[size_t(running_->frames)];
     session_.set_camera(running_->path->camera(time, running_->like));
     if (running_->form.panels)
-        recorder_.add_frame(finished());
+        recorder_.add_frame(panels_frame(finished, running_->size, running_->form.video));
     else
         draw_frame(1);
     ++running_->frames;
@@ -104,7 +117,7 @@ void LiveRecording::add_live_frames(const Screen& shown) {
     }
     running_->frames += count;
     if (!running_->form.panels) return draw_frame(count);
-    const Image frame = shown();
+    const Image frame = panels_frame(shown, running_->size, running_->form.video);
     for (int i = 0; i < count; ++i) recorder_.add_frame(frame);
 }
 
@@ -118,7 +131,11 @@ void LiveRecording::advance(const Screen& finished, const Screen& shown) {
         else
             add_live_frames(shown);
     } catch (...) {
-        end();
+        // Nobody else would stop the recorder; what finishing the file reports is of the same cause.
+        try {
+            stop();
+        } catch (const std::exception&) {
+        }
         throw;
     }
 }

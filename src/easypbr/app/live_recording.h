@@ -41,7 +41,8 @@ class LiveRecording {
     void start(const RecordingForm& form, Vec2i window);
     /// Begins to record the camera on its way, a frame with every advance(), in full quality.
     void start_path(const RecordingForm& form, Vec2i window, const CameraPath& path);
-    /// The next frame or frames. Throws what writing threw; the recording is then over.
+    /// The next frame or frames. Throws what drawing and writing threw, and ArgumentError when a window that
+    /// is recorded with its panels was resized; the recording is then over, and its file finished.
     void advance(const Screen& finished, const Screen& shown);
     /// Finishes the file and puts the camera back. Returns the number of frames. Throws what writing threw.
     int stop();
