@@ -138,6 +138,51 @@ TEST_F(LiveDrawingTest, WhatCannotBeDrawnIsToldOnceAndLeavesThePicture) {
     EXPECT_TRUE(same(live_.picture().image(), still()));
 }
 
+TEST_F(LiveDrawingTest, UndoTakesBackWhatCannotBeDrawnAndNothingElse) {
+    settle();
+    Settings& settings = session_.settings();
+    EXPECT_FALSE(live_.edits().can_undo());
+    const BackgroundMode mode = settings.background.mode;
+    settings.background.mode = BackgroundMode::image;
+    step();
+    EXPECT_TRUE(live_.edits().can_undo());
+    step({key('Z', true)});
+    EXPECT_EQ(settings.background.mode, mode);
+    settings.tonemap.exposure = 3;
+    settle();
+    settings.background.mode = BackgroundMode::image;
+    for (int i = 0; i < 4; ++i) step();
+    ASSERT_TRUE(live_.picture().has_failed());
+    step({key('Z', true)});
+    EXPECT_EQ(settings.background.mode, mode);
+    EXPECT_TRUE(settings.tonemap.exposure.is_pinned());
+    settle();
+    EXPECT_FALSE(live_.picture().has_failed());
+    EXPECT_TRUE(same(live_.picture().image(), still()));
+    step({key('Y', true)});
+    EXPECT_EQ(settings.background.mode, BackgroundMode::image);
+    step({key('Z', true)});
+    EXPECT_EQ(settings.background.mode, mode);
+    step({key('Z', true)});
+    EXPECT_FALSE(settings.tonemap.exposure.is_pinned());
+}
+
+TEST_F(LiveDrawingTest, UndoLeavesWhatAProgramHasSet) {
+    settle();
+    Settings& settings = session_.settings();
+    settings.background.color = {1, 0, 0};
+    settle();
+    live_.edits().change_settings([](Settings& all) { all.tonemap.exposure = 4; });
+    settle();
+    step({key('Z', true)});
+    EXPECT_NE(settings.background.color, Vec3(1, 0, 0));
+    EXPECT_TRUE(settings.tonemap.exposure.is_pinned());
+    EXPECT_FALSE(live_.edits().can_undo());
+    step({key('Y', true)});
+    EXPECT_EQ(settings.background.color, Vec3(1, 0, 0));
+    EXPECT_TRUE(settings.tonemap.exposure.is_pinned());
+}
+
 // A client without panels has no screen of its own to record: the form's wish for it is none.
 TEST_F(LiveDrawingTest, RecordsACameraPathAndShowsItsFrames) {
     namespace fs = std::filesystem;

@@ -165,6 +165,50 @@ def test_undo_and_reset(connect):
     assert client.settings["background.color"]["value"] != "#123456"
 
 
+def test_undo_leaves_what_the_program_has_set(view, connect):
+    client = connect()
+    client.until_exact()
+    client.send("set", name="background.color", value="#123456")
+    client.until_setting("background.color", "#123456")
+    client.collect(0.5)
+    view.settings["tonemap.exposure"] = 4.0
+    client.until_setting("tonemap.exposure", "4")
+    client.send("act", what="undo")
+    client.until_told("settings", lambda message: "background.color" in message["values"])
+    assert client.settings["background.color"]["value"] != "#123456"
+    assert client.settings["tonemap.exposure"]["value"] == "4"
+
+
+@pytest.mark.parametrize("name, value", [
+    ("background.mode", "image"), ("camera.pose", ",".join("0" * 16)), ("camera.intrinsics", "0,0,0,0,0,0"),
+    ("camera.distortion", "0.1,0,0,0")])
+def test_what_cannot_be_drawn_is_refused_and_the_view_goes_on(connect, name, value):
+    client = connect()
+    client.until_exact()
+    client.send("set", name="tonemap.exposure", value="3")
+    client.until_setting("tonemap.exposure", "3")
+    before = {setting: told["value"] for setting, told in client.settings.items()}
+    client.send("set", name=name, value=value)
+    client.until_told("notice", lambda notice: notice["error"])
+    client.collect(0.5)
+    assert {setting: told["value"] for setting, told in client.settings.items()} == before
+    last = client.frames[-1].number
+    client.drag((50, 50), (90, 60))
+    client.until_exact(last, client.inputs)
+
+
+def test_what_cannot_be_drawn_by_the_program_s_settings_is_mended_by_them(view, connect):
+    client = connect()
+    first = client.until_exact()
+    view.settings["background.mode"] = "image"
+    client.until_told("notice", lambda notice: notice["error"] and "background.image" in notice["text"])
+    # What else changes is told meanwhile.
+    client.send("set", name="background.color", value="#123456")
+    client.until_setting("background.color", "#123456")
+    view.settings["background.mode"] = "color"
+    client.until_exact(first.number)
+
+
 def test_channels_and_resizing(connect, tmp_path):
     client = connect()
     first = client.until_exact()

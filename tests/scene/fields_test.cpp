@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -143,6 +144,12 @@ TEST(Fields, NumbersKeepTheirBits) {
         set_from_text(read, "tonemap.exposure", to_text(exposure, exposure.get(settings)));
         ASSERT_EQ(std::bit_cast<uint32_t>(*read.tonemap.exposure), std::bit_cast<uint32_t>(number)) << number;
     }
+    // The shortest form of the largest float is larger than it.
+    constexpr float largest = std::numeric_limits<float>::max();
+    set(settings, "path.clamp", Value{double(largest)});
+    set_from_text(settings, "path.clamp", to_text(field("path.clamp"), get(settings, "path.clamp")));
+    EXPECT_EQ(settings.path.clamp, largest);
+    EXPECT_TRUE(is_valid(field("path.clamp"), get(settings, "path.clamp")));
     settings.camera.margin = 0.1f;
     EXPECT_EQ(to_text(field("camera.margin"), get(settings, "camera.margin")), "0.1");
 }

@@ -106,6 +106,16 @@ void Edits::will_change_light(const std::string& name) {
     changed_lights_.insert(name);
 }
 
+void Edits::change_settings(const std::function<void(Settings&)>& change) {
+    change(session_.settings());
+    history_.change_all(change);
+}
+
+bool Edits::has_news() const {
+    return !changed_looks_.empty() || !changed_poses_.empty() || !changed_data_.empty() ||
+           !changed_lights_.empty() || !history_.is_present(session_.settings());
+}
+
 void Edits::note() {
     const Scene& scene = session_.scene();
     ObjectStates changed;
@@ -150,7 +160,8 @@ void Edits::restore(const History::Step& step) {
 }
 
 void Edits::undo() {
-    if (can_undo()) restore(history_.undo());
+    note();
+    if (history_.can_undo()) restore(history_.undo());
 }
 
 void Edits::redo() {

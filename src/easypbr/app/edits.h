@@ -1,6 +1,7 @@
 // What a person changes in a session by hand, with undo and redo.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,16 +38,22 @@ class Edits {
     /// Before a light of the scene is added, changed or removed.
     void will_change_light(const std::string& name);
 
+    /// A change of settings by the program: undo() and redo() leave it. Throws what the change throws.
+    void change_settings(const std::function<void(Settings&)>& change);
+
     /// Notes settings and what was changed as one state.
     void note();
-    bool can_undo() const { return history_.can_undo(); }
+    bool can_undo() const { return history_.can_undo() || (!history_.empty() && has_news()); }
     bool can_redo() const { return history_.can_redo(); }
-    /// Nothing happens when there is nothing to.
+    /// What was not noted yet, as what cannot be drawn, is a state of its own. Nothing happens when there is
+    /// nothing to undo.
     void undo();
     void redo();
 
   private:
     void restore(const History::Step& step);
+    /// Something was changed since the last note().
+    bool has_news() const;
 
     Session& session_;
     History history_;

@@ -17,10 +17,12 @@ bool same_choices(const Settings& a, const Settings& b) {
     });
 }
 
+bool History::is_present(const Settings& settings) const {
+    return !states_.empty() && same_choices(*states_[present_].settings, settings);
+}
+
 void History::note(const Settings& settings, const ObjectStates& changed, const LightStates& lights) {
-    if (!states_.empty() && changed.empty() && lights.empty() &&
-        same_choices(*states_[present_].settings, settings))
-        return;
+    if (changed.empty() && lights.empty() && is_present(settings)) return;
     Step state{std::make_shared<const Settings>(settings), {}, {}};
     if (!states_.empty()) {
         state.objects = states_[present_].objects;
@@ -55,6 +57,14 @@ void History::know(const std::string& object, const ObjectState& before) {
 
 void History::know_light(const std::string& name, const std::optional<Light>& before) {
     for (Step& state : states_) state.lights.try_emplace(name, before);
+}
+
+void History::change_all(const std::function<void(Settings&)>& change) {
+    for (Step& state : states_) {
+        auto changed = std::make_shared<Settings>(*state.settings);
+        change(*changed);
+        state.settings = std::move(changed);
+    }
 }
 
 History::Step History::go(size_t to) {

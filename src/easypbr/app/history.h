@@ -44,13 +44,18 @@ using LightStates = std::map<std::string, std::optional<Light>>;
 /// States of settings, objects and lights, oldest first. What is noted after undo() drops what was undone.
 class History {
   public:
+    /// Whether they are the present state's, but for what is inferred.
+    bool is_present(const Settings& settings) const;
     /// Notes the settings, unless they are the present ones but for what is inferred, and the objects and
     /// lights that were changed since the last note.
     void note(const Settings& settings, const ObjectStates& changed = {}, const LightStates& lights = {});
     /// What an object was before a person changed it for the first time: it was so in all states.
     void know(const std::string& object, const ObjectState& before);
     void know_light(const std::string& name, const std::optional<Light>& before);
+    /// What the program changes is so in all states.
+    void change_all(const std::function<void(Settings&)>& change);
 
+    bool empty() const { return states_.empty(); }
     bool can_undo() const { return present_ > 0; }
     bool can_redo() const { return present_ + 1 < states_.size(); }
 

@@ -1,6 +1,8 @@
 // What a view does for its clients, message by message.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "easypbr/app/camera_text.h"
 #include "easypbr/core/error.h"
 #include "easypbr/remote/view_state.h"
@@ -38,9 +40,28 @@ View::Own::Own(Own& shared, ViewClients clients, const OwnViewOf& own)
     live.channel = shared.live.channel;
 }
 
-std::string View::Own::camera_message() {
+void View::Own::keep_drawable(const Settings& before) {
+    if (session.scene().names().empty()) return;
+    try {
+        session.resolve(size);
+    } catch (const Error&) {
+        const Settings changed = std::exchange(session.settings(), before);
+        try {
+            session.resolve(size);
+        } catch (const Error&) {
+            // It was no better before: a change may mend one of several things.
+            session.settings() = changed;
+            return;
+        }
+        throw;
+    }
+}
+
+std::string View::Own::camera_message() try {
     if (session.scene().names().empty()) return remote::camera_message({});
     return remote::camera_message(app::camera_text(session, size));
+} catch (const Error&) {
+    return told_camera;
 }
 
 std::string View::Own::scene_message() {
@@ -103,7 +124,9 @@ void View::obey(ClientId, const SetField& message) {
     if (!is_open(field)) throw ArgumentError(fmt::format("{}: only the program may set this", field.name));
     const Value value = parse_value(field, message.value);
     check_client_value(field, value);
+    const Settings before = own.session.settings();
     set(own.session.settings(), field.name, value);
+    own.keep_drawable(before);
     own.last_change_s = now_seconds();
 }
 
@@ -151,7 +174,9 @@ void View::obey(ClientId, const SetCamera& message) {
         own_->live.begin_frame(own_->size, 0);
         draw(false);
     }
+    const Settings before = own_->session.settings();
     app::apply_camera_text(message.text, own_->session.settings());
+    own_->keep_drawable(before);
     own_->last_change_s = now_seconds();
 }
 

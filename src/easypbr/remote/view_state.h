@@ -17,6 +17,10 @@ struct View::Own {
         std::unique_ptr<ServedFiles> given_files);
     Own(Own& shared, ViewClients clients, const OwnViewOf& own);
 
+    /// Keeps a change of the settings, which were `before`, unless nothing can be drawn by it. Throws why.
+    void keep_drawable(const Settings& before);
+
+    /// The last one that there was while the settings give no camera.
     std::string camera_message();
     std::string scene_message();
     std::string animation_message() const;

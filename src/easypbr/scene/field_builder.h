@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
@@ -15,13 +16,14 @@
 namespace easypbr::detail {
 
 /// The double whose shortest decimal form is that of the float: 0.1 for 0.1f, so that texts and files stay
-/// short. Turned back into a float it gives the same bits.
+/// short. Turned back into a float it gives the same bits. The form of the largest float is larger than it:
+/// that one stays as it is.
 inline double shortest_double(float value) {
     char text[32];
     const char* const end = std::to_chars(text, text + sizeof text, value).ptr;
     double result = 0;
     std::from_chars(text, end, result);
-    return result;
+    return std::abs(result) > double(std::numeric_limits<float>::max()) ? double(value) : result;
 }
 
 /// Names of an enumeration's values, in their order.
