@@ -149,6 +149,29 @@ def test_a_still_of_any_size(view, connect, tmp_path):
     assert np.array_equal(shot.image(tmp_path), rendered(view, client, (333, 77)))
 
 
+def test_stills_of_a_client_that_has_left_hold_nobody_up(connect):
+    client = connect()
+    client.until_exact()
+    for i in range(20):  # of seconds each
+        client.send("shot", id=i, width=4096, height=4096)
+    time.sleep(0.5)
+    client.close()
+    start = time.monotonic()
+    connect().until_exact()
+    assert time.monotonic() - start < 10
+
+
+def test_only_a_few_stills_wait_at_a_time(connect):
+    client = connect()
+    client.until_exact()
+    client.send("shot", id=1, width=2048, height=2048)
+    for i in range(2, 12):
+        client.send("shot", id=i, width=32, height=32)
+    client.until_told("notice", lambda notice: notice["error"] and "stills" in notice["text"])
+    client.collect(0.5)
+    assert 1 <= sum(frame.kind == SHOT for frame in client.frames) <= 5
+
+
 def test_undo_and_reset(connect):
     client = connect()
     first = client.until_exact()

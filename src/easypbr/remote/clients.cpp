@@ -388,6 +388,11 @@ bool Clients::anybody() const {
     return admitted() > 0;
 }
 
+bool Clients::is_there(ClientId client) const {
+    const std::lock_guard lock(mutex_);
+    return clients_.contains(client);
+}
+
 bool Clients::anybody_looks(ViewId view) const {
     const std::lock_guard lock(mutex_);
     return std::ranges::any_of(clients_, [&](const auto& each) { return each.second.looks_at(view); });

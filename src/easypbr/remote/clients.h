@@ -103,6 +103,8 @@ class Clients : public WireEvents {
 
     std::vector<ClientState> states() const;
     bool anybody() const;
+    /// The client is connected.
+    bool is_there(ClientId client) const;
     /// Somebody is connected and can see the view's picture.
     bool anybody_looks(ViewId view) const;
     /// A picture that is drawn now, beside so many that are being coded, can be sent to who controls, or,

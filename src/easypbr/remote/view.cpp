@@ -1,5 +1,7 @@
 #include "easypbr/remote/view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -74,7 +76,10 @@ void View::act(const std::vector<Order>& orders) {
     Own& own = *own_;
     const double now = now_seconds();
     own.live.begin_frame(own.size, std::min(now - std::exchange(own.last_frame_s, now), 0.1));
+    int stills = 0;
     for (const Order& order : orders) try {
+            if (std::holds_alternative<Shot>(order.message) && ++stills > most_stills)
+                throw ArgumentError(fmt::format("stills: at most {} wait at a time", most_stills));
             obey(order);
         } catch (const Error& error) {
             clients_.tell(order.from, notice_text(error.what(), true));

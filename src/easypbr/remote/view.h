@@ -56,6 +56,8 @@ class View {
     /// What a moving picture's drawing should take where the CPU draws: reading, encoding and the way come to
     /// it.
     static constexpr double longest_frame_s = 0.045;
+    /// Stills that are drawn before others get their turn; more that wait meanwhile are refused.
+    static constexpr int most_stills = 2;
     /// How often an idle view looks whether the scene is another one.
     static constexpr double look_s = 0.05;
 

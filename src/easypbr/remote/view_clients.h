@@ -30,6 +30,7 @@ class ViewClients {
     void tell(ClientId client, const std::string& text, bool for_watchers = true) const {
         clients_->tell(client, text, for_watchers);
     }
+    bool is_there(ClientId client) const { return clients_->is_there(client); }
     bool anybody_looks() const { return clients_->anybody_looks(view_); }
     bool has_room(size_t coming) const { return clients_->has_room(view_, coming); }
     bool has_delivered() const { return clients_->has_delivered(view_); }

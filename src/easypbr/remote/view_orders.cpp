@@ -5,6 +5,7 @@
 
 #include "easypbr/app/camera_text.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/remote/view_state.h"
 #include "easypbr/render/pipeline/layers.h"
 #include "easypbr/scene/mesh.h"
@@ -157,6 +158,15 @@ void View::obey(ClientId, const SetChannel& message) {
 
 void View::obey(ClientId from, const Shot& message) {
     Own& own = *own_;
+    if (!clients_.is_there(from)) return;
+    Image image;
+    try {
+        const InterruptScope scope([&] { return !clients_.is_there(from); }, true);
+        image = own.session.render({message.size, own.session.settings().image.samples});
+    } catch (const Interrupted&) {
+        check_interrupt();  // Who waits outside is told.
+        return;
+    }
     FrameHeader header;
     header.kind = FrameKind::shot;
     header.codec = Codec::png;
@@ -164,7 +174,6 @@ void View::obey(ClientId from, const Shot& message) {
     header.frame = clients_.next_frame();
     header.input = message.id;
     header.view = clients_.view();
-    const Image image = own.session.render({message.size, own.session.settings().image.samples});
     clients_.send_shot(from, encode({image, header, 95}));
 }
 
