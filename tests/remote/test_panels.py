@@ -1,6 +1,7 @@
 """Panels of the program in clients: what they show, what clients do to them."""
 
 import contextlib
+import os
 import pathlib
 import threading
 import weakref
@@ -130,6 +131,29 @@ def test_a_panel_may_close_its_server(view):
     client.close()
     with view.serve() as again:  # Nothing is left behind.
         Client(again.url).close()
+
+
+def test_settings_do_not_pile_up_while_a_panel_takes_its_time(view, server, connect):
+    def resident_bytes():
+        return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    is_in, goes_on = threading.Event(), threading.Event()
+
+    def panel(ui):
+        is_in.set()
+        goes_on.wait(60)
+
+    server._handle.add_panel("Slow", panel)
+    client = connect()
+    assert is_in.wait(60)
+    before = resident_bytes()
+    for i in range(50_000):  # about 2 kB each
+        view.settings["tonemap.exposure"] = 1 + i % 7 / 1000
+    grown = resident_bytes() - before
+    view.settings["tonemap.exposure"] = 2.5
+    goes_on.set()
+    client.until_setting("tonemap.exposure", "2.5")
+    assert grown < 30e6
 
 
 def test_a_closed_server_keeps_no_function(view):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "easypbr/app/history.h"
 #include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
 #include "easypbr/remote/served_files.h"
@@ -17,7 +18,8 @@ Views::Views(const Scene& scene, const Settings& settings, Inbox& inbox, Clients
              std::unique_ptr<ServedFiles> files)
     : inbox_(inbox),
       clients_(clients),
-      shared_(scene, settings, inbox, {clients, shared_view}, std::move(files)) {}
+      shared_(scene, settings, inbox, {clients, shared_view}, std::move(files)),
+      given_(std::make_shared<const Settings>(settings)) {}
 
 Views::~Views() {
     stop();
@@ -101,10 +103,22 @@ const View* Views::refined_next() {
 }
 
 void Views::take_settings(const Settings& settings) {
-    inbox_.add([this, given = std::make_shared<const Settings>(settings)] {
-        shared_.take_settings(*given);
-        for (const auto& [id, view] : own_) view->take_settings(*given);
-    });
+    const std::lock_guard lock(giving_);
+    // A program that only reads its settings does not wake the thread.
+    if (!waits_ && app::same_choices(*given_, settings)) return;
+    given_ = std::make_shared<const Settings>(settings);
+    if (!std::exchange(waits_, true)) inbox_.add([this] { pass_settings_on(); });
+}
+
+void Views::pass_settings_on() {
+    std::shared_ptr<const Settings> given;
+    {
+        const std::lock_guard lock(giving_);
+        waits_ = false;
+        given = given_;
+    }
+    shared_.take_settings(*given);
+    for (const auto& [id, view] : own_) view->take_settings(*given);
 }
 
 void Views::add_animations(const std::string& name, const Animations& animations) {

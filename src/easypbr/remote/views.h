@@ -4,6 +4,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -42,6 +43,7 @@ class Views {
   private:
     void run();
     void turn();
+    void pass_settings_on();
     /// Begins and ends views as clients want.
     void follow_clients();
     /// Which of them goes on with its picture; null: none.
@@ -55,6 +57,10 @@ class Views {
     ViewId refined_ = shared_view;
     std::thread thread_;
     std::atomic<std::thread::id> drawing_;  ///< that of run()
+
+    std::mutex giving_;                      ///< of the two below
+    std::shared_ptr<const Settings> given_;  ///< of the program, the newest
+    bool waits_ = false;                     ///< they wait for the thread, which has the newest alone
 };
 
 }  // namespace easypbr::remote
