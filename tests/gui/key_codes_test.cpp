@@ -40,6 +40,20 @@ TEST(KeyCodes, OtherKeysKeepTheirCode) {
     EXPECT_EQ(pressed(app::key::escape, nullptr, false), app::key::escape);
 }
 
+// GLFW says how the modifiers were before the event.
+TEST(KeyCodes, AModifierCountsFromItsOwnEventOn) {
+    constexpr int shift = 1, control = 2, alt = 4;
+    namespace k = app::key;
+    EXPECT_EQ(modifiers_after(k::left_shift, true, 0), shift);
+    EXPECT_EQ(modifiers_after(k::right_shift, false, shift | alt), alt);
+    EXPECT_EQ(modifiers_after(k::right_control, true, shift), shift | control);
+    EXPECT_EQ(modifiers_after(k::left_alt, true, 0), alt);
+    EXPECT_EQ(modifiers_after('A', true, control), control);
+    EXPECT_EQ(modifiers_after(k::end, false, alt), alt);
+    EXPECT_EQ(modifiers_after(343, true, 0), 0);  // left super
+    EXPECT_EQ(modifiers_after(348, true, 0), 0);  // menu
+}
+
 // With Control let go first it would otherwise stay down for ever.
 TEST(KeyCodes, AKeyGoesUpAsItWentDown) {
     KeyCodes codes;

@@ -113,6 +113,33 @@ def test_the_wheel_zooms_and_a_click_picks(window):
     assert abs(distance(window.view.camera) - before) < 0.05 * before
 
 
+def test_shift_flies_four_times_as_fast(window):
+    window.key("h")
+    window.mouse("mousemove", *MIDDLE)
+
+    def metres_per_second(*keys):
+        window.view.camera = easypbr.Camera.look_at((0, 0, 5), (0, 0, 0))
+        window.settle()
+        for key in keys:
+            window.display.run("xdotool", "keydown", key)
+            window.update(2)
+        before, start, step = window.view.camera.position.copy(), time.monotonic(), 0
+        while time.monotonic() < start + 0.7:
+            # Moves of the pointer come meanwhile.
+            window.display.run("xdotool", "mousemove_relative", "--", str(1 - 2 * (step % 2)), "0")
+            window.update()
+            step += 1
+        speed = np.linalg.norm(window.view.camera.position - before) / (time.monotonic() - start)
+        for key in keys:
+            window.display.run("xdotool", "keyup", key)
+        window.update(5)
+        return speed
+
+    slow = metres_per_second("a")
+    for keys in (("shift", "a"), ("a", "shift")):
+        assert 3 < metres_per_second(*keys) / slow < 5, keys
+
+
 def test_keys_toggle_each_panel(window):
     names = ["Scene", "Object", "Effects", "Lights", "Environment", "Camera", "Channels", "Statistics", "Animations",
              "Camera path", "Recorder"]

@@ -16,7 +16,8 @@ enum class MouseButton { left, right, middle };
 namespace key {
 inline constexpr int space = 32, escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260,
                      del = 261, right = 262, left = 263, down = 264, up = 265, page_up = 266, page_down = 267,
-                     home = 268, end = 269, f1 = 290, f12 = 301;
+                     home = 268, end = 269, f1 = 290, f12 = 301, left_shift = 340, left_control = 341,
+                     left_alt = 342, right_shift = 344, right_control = 345, right_alt = 346;
 }
 
 struct InputEvent {
@@ -36,8 +37,8 @@ struct InputEvent {
     Vec2d position{0, 0};  ///< pixels of the picture, (0, 0) is the top left corner
     MouseButton button = MouseButton::left;
     int key = 0;
-    bool shift = false, control = false, alt = false;
-    Vec2d scroll{0, 0};  ///< y: positive away from the person
+    bool shift = false, control = false, alt = false;  ///< held, after the event
+    Vec2d scroll{0, 0};                                ///< y: positive away from the person
     uint32_t code = 0;
     std::vector<std::string> paths;
     Vec2i size{0, 0};

@@ -6,7 +6,18 @@
 #include <map>
 #include <string_view>
 
+#include "easypbr/app/input.h"
+
 namespace easypbr::gui {
+
+/// The modifiers that are held after a key's event. `before`: those before it, as GLFW tells them with the
+/// event: bits of Shift, Control and Alt.
+inline int modifiers_after(int key, bool down, int before) {
+    namespace k = app::key;
+    const int left = key >= k::right_shift ? key - k::right_shift : key - k::left_shift;
+    if (left < 0 || left > k::left_alt - k::left_shift) return before;
+    return down ? before | 1 << left : before & ~(1 << left);
+}
 
 /// The keys that are down in a window, as codes of app::InputEvent.
 class KeyCodes {

@@ -24,6 +24,8 @@ using Kind = InputEvent::Kind;
 static_assert(app::key::escape == GLFW_KEY_ESCAPE && app::key::del == GLFW_KEY_DELETE &&
               app::key::right == GLFW_KEY_RIGHT && app::key::end == GLFW_KEY_END &&
               app::key::f1 == GLFW_KEY_F1 && app::key::f12 == GLFW_KEY_F12);
+static_assert(app::key::left_shift == GLFW_KEY_LEFT_SHIFT && app::key::right_alt == GLFW_KEY_RIGHT_ALT &&
+              GLFW_MOD_SHIFT == 1 && GLFW_MOD_CONTROL == 2 && GLFW_MOD_ALT == 4);
 
 constexpr double ask_again_seconds = 0.5;
 /// How long the owner of the clipboard has to answer.
@@ -72,6 +74,9 @@ struct WindowCallbacks {
         event.kind = kind;
         event.time = now();
         event.position = in_pixels(window, pointer(window));
+        event.shift = self.modifiers_ & GLFW_MOD_SHIFT;
+        event.control = self.modifiers_ & GLFW_MOD_CONTROL;
+        event.alt = self.modifiers_ & GLFW_MOD_ALT;
         self.events_.push_back(event);
         return self.events_.back();
     }
@@ -93,36 +98,32 @@ struct WindowCallbacks {
             position = Vec2d(position.x() * pixels_x / width, position.y() * pixels_y / height);
         return position;
     }
-    static void modify(InputEvent& event, int mods) {
-        event.shift = mods & GLFW_MOD_SHIFT;
-        event.control = mods & GLFW_MOD_CONTROL;
-        event.alt = mods & GLFW_MOD_ALT;
-    }
-
     static void move(GLFWwindow* window, double x, double y) {
         of(window).pointer_ = Vec2d(x, y);
         add(window, Kind::move);
     }
     static void button(GLFWwindow* window, int button, int action, int mods) {
         if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+        of(window).modifiers_ = mods;
         InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::release : Kind::press);
         event.button = app::MouseButton(button);
-        modify(event, mods);
     }
     static void scroll(GLFWwindow* window, double x, double y) { add(window, Kind::scroll).scroll = {x, y}; }
     static void key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+        // Moves and letters come without modifiers, and a modifier's own event says how it was before.
+        of(window).modifiers_ = modifiers_after(key, action != GLFW_RELEASE, mods);
         InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::key_up : Kind::key_down);
         KeyCodes& codes = of(window).key_codes_;
         event.key = action == GLFW_RELEASE
                         ? codes.up(key)
                         : codes.down(key, glfw().glfwGetKeyName(key, scancode), mods & GLFW_MOD_CONTROL);
-        modify(event, mods);
     }
     static void text(GLFWwindow* window, unsigned code) { add(window, Kind::text).code = code; }
     static void drop(GLFWwindow* window, int count, const char** paths) {
         add(window, Kind::drop).paths.assign(paths, paths + count);
     }
     static void focus(GLFWwindow* window, int focused) {
+        of(window).modifiers_ = 0;
         if (!focused) add(window, Kind::focus_lost);
     }
     static void refresh(GLFWwindow* window) { of(window).needs_present_ = true; }
