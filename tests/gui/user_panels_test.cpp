@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <thread>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
@@ -120,6 +121,72 @@ TEST_F(UserPanel, AClickThatIsOverWithinOneFrameCounts) {
     EXPECT_FALSE(view_.places().contains(preset));
     quick_click(place("Menu/preset"));
     EXPECT_TRUE(view_.places().contains(preset));
+}
+
+class UserField : public UserPanel {
+  protected:
+    UserField() {
+        view_.add_panel("Training", [this](app::Widgets& ui) { ui.text_field("name", name_); });
+        settle();
+        where_ = place("Training/name", 0.9);
+        click(where_);
+    }
+    void press(int key, bool control = false) {
+        for (const Kind kind : {Kind::key_down, Kind::key_up}) {
+            events_.push_back(at(kind, where_));
+            events_.back().key = key;
+            events_.back().control = control;
+        }
+    }
+    void type(char letter) {
+        events_.push_back(at(Kind::text, where_));
+        events_.back().code = uint32_t(letter);
+    }
+    /// Everything comes within one frame.
+    void send() {
+        step(std::exchange(events_, {}));
+        for (int i = 0; i < 50 && view_.is_busy(); ++i) step();
+        EXPECT_FALSE(view_.is_busy());
+    }
+
+    std::string name_ = "abc";
+    Vec2d where_;
+    std::vector<InputEvent> events_;
+};
+
+// As while a frame takes long, or when a program types.
+TEST_F(UserField, KeysThatAreOverWithinOneFrameCountInTheirOrder) {
+    press(app::key::end);
+    press(app::key::backspace);
+    press(app::key::backspace);
+    type('x');
+    type('y');
+    press(app::key::backspace);
+    type('z');
+    send();
+    EXPECT_EQ(name_, "axz");
+}
+
+TEST_F(UserField, CopiesToTheClipboardOfTheViewAndPastesFromIt) {
+    std::string held = "from outside";
+    view_.drawing().clipboard() = {[&] { return held; }, [&](const std::string& text) { held = text; }};
+    press('A', true);
+    press('V', true);
+    send();
+    EXPECT_EQ(name_, "from outside");
+    type('!');
+    press('A', true);
+    press('C', true);
+    send();
+    EXPECT_EQ(held, "from outside!");
+    view_.drawing().clipboard().read = []() -> std::string {
+        throw ContextError("no clipboard: it is gone");
+    };
+    press('V', true);
+    send();
+    EXPECT_EQ(name_, "from outside!");
+    ASSERT_FALSE(view_.drawing().notifications().list().empty());
+    EXPECT_EQ(view_.drawing().notifications().list().back().text, "no clipboard: it is gone");
 }
 
 TEST_F(UserPanel, EscapeClosesListsAndMenusBeforeTheWindow) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <set>
 #include <utility>
 
 #include "easypbr/core/error.h"
@@ -106,6 +107,34 @@ std::string hash_of(const ImDrawData& data) {
     return hashes;
 }
 
+// Nothing may be thrown through ImGui.
+const char* pasted_text(void* user) {
+    FieldClipboard& fields = *static_cast<FieldClipboard*>(user);
+    try {
+        fields.text = fields.clipboard->read();
+        return fields.text.c_str();
+    } catch (const std::exception& error) {
+        fields.failure = error.what();
+        return nullptr;
+    }
+}
+
+void copy_text(void* user, const char* text) {
+    FieldClipboard& fields = *static_cast<FieldClipboard*>(user);
+    try {
+        fields.clipboard->write(text);
+    } catch (const std::exception& error) {
+        fields.failure = error.what();
+    }
+}
+
+/// Whether a key that goes down may change a text or what is chosen in it.
+bool changes_text(const app::InputEvent& event) {
+    namespace k = app::key;
+    const bool modifies = event.key >= k::left_shift && event.key <= k::right_alt;
+    return !modifies && (event.control || event.key >= k::escape);
+}
+
 }  // namespace
 
 Gui::Gui() {
@@ -117,6 +146,9 @@ Gui::Gui() {
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
     io.UserData = &places_;
+    io.ClipboardUserData = &field_clipboard_;
+    io.GetClipboardTextFn = pasted_text;
+    io.SetClipboardTextFn = copy_text;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     namespace k = app::key;
     const std::pair<ImGuiKey, int> keys[] = {{ImGuiKey_Tab, k::tab},
@@ -184,21 +216,18 @@ bool Gui::take(const app::InputEvent& event) {
             return over_panel(event.position);
         case Kind::key_down:
         case Kind::key_up:
-            if (event.key >= 0 && event.key < int(std::size(io.KeysDown)))
-                io.KeysDown[event.key] = event.kind == Kind::key_down;
-            io.KeyCtrl = event.control;
-            io.KeyShift = event.shift;
-            io.KeyAlt = event.alt;
+            keys_.push_back(event);
             if (event.kind == Kind::key_down && event.key == app::key::escape && (popup_ || active_)) {
                 closes_popups_ = popup_;
                 return true;
             }
             return wants_keys_;
         case Kind::text:
-            io.AddInputCharacter(event.code);
+            keys_.push_back(event);
             return wants_keys_;
         case Kind::focus_lost:
             down_ = pressed_ = {};
+            keys_.clear();
             io.ClearInputKeys();
             owned_.clear();
             return false;
@@ -235,6 +264,30 @@ void Gui::hand_over_input() {
         const bool pressed = std::exchange(pressed_[i], false);
         io.MouseDown[i] = down_[i] || pressed;
     }
+    hand_over_keys();
+}
+
+void Gui::hand_over_keys() {
+    using Kind = app::InputEvent::Kind;
+    ImGuiIO& io = ImGui::GetIO();
+    std::set<int> released;
+    bool is_last = false, typed = false;
+    for (; !is_last && !keys_.empty(); keys_.pop_front()) {
+        const app::InputEvent& event = keys_.front();
+        const bool is_key = event.kind != Kind::text, down = event.kind == Kind::key_down;
+        const bool known = is_key && event.key >= 0 && event.key < int(std::size(io.KeysDown));
+        const bool changes = known && io.KeysDown[event.key] != down;
+        is_last = changes && down && changes_text(event);
+        // A key that is down before and after is not pressed for ImGui, and letters are none with Control.
+        if ((is_last && released.contains(event.key)) || (typed && event.control)) return;
+        if (changes && !down) released.insert(event.key);
+        if (known) io.KeysDown[event.key] = down;
+        if (!is_key) io.AddInputCharacter(event.code);
+        typed |= !is_key;
+        io.KeyCtrl = event.control;
+        io.KeyShift = event.shift;
+        io.KeyAlt = event.alt;
+    }
 }
 
 float Gui::menu_height(const GuiState& state) {
@@ -268,6 +321,7 @@ bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
     const GuiScope scope(context_);
     prepare(state, seconds);
     hand_over_input();
+    field_clipboard_.clipboard = &state.live.clipboard();
     places_.clear();
     ImGui::NewFrame();
     if (std::exchange(closes_popups_, false) && !ImGui::GetCurrentContext()->OpenPopupStack.empty())
@@ -285,6 +339,7 @@ bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
     // What was begun is ended, so that the next frame is drawn as ever.
     if (other || !failure.empty()) ImGui::ErrorCheckEndFrameRecover(nullptr);
     tell(state, failure);
+    if (!field_clipboard_.failure.empty()) state.notify(std::exchange(field_clipboard_.failure, {}), true);
     notifications(state);
     ImGui::Render();
     if (other) std::rethrow_exception(other);

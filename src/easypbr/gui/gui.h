@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -14,6 +15,13 @@
 struct ImGuiContext;
 
 namespace easypbr::gui {
+
+/// What the fields of a GUI copy to and paste from, in a frame.
+struct FieldClipboard {
+    app::Clipboard* clipboard = nullptr;
+    std::string text;     ///< read last
+    std::string failure;  ///< why it could not be read or written
+};
 
 /// Dear ImGui serves one thread at a time: viewers on several threads take turns here.
 class Gui {
@@ -28,6 +36,8 @@ class Gui {
     bool take(const app::InputEvent& event);
     /// The pointer drags a slider or the like, or a field is typed into.
     bool is_active() const { return active_; }
+    /// Keys wait for the next frame: one frame tells neither their order nor a key that goes down twice.
+    bool has_keys() const { return !keys_.empty(); }
 
     /// What was uploaded is gone with its context, and is uploaded again.
     void forget_device();
@@ -50,6 +60,8 @@ class Gui {
     void prepare(const GuiState& state, double seconds);
     /// The buttons that are down, and those that were for a moment since the last frame.
     void hand_over_input();
+    /// Keys and letters up to the first key that changes a text.
+    void hand_over_keys();
     /// Makes a notification of what failed in a frame; empty: nothing did.
     void tell(GuiState& state, const std::string& failure);
     void draw_panels(GuiState& state, const std::function<void()>& more);
@@ -70,6 +82,8 @@ class Gui {
     /// A click within one frame is held down for all of it, or the GUI would not see it.
     std::array<bool, 3> down_{}, pressed_{};
     std::vector<app::MouseButton> owned_;  ///< buttons that went down over a panel
+    std::deque<app::InputEvent> keys_;     ///< keys and letters that no frame has had yet
+    FieldClipboard field_clipboard_;
 };
 
 }  // namespace easypbr::gui

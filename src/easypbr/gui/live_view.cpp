@@ -123,7 +123,7 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
         !live_.panels().empty() && state_.panels.shown && (since_panels_ += seconds) >= panels_seconds;
     bool draws = gui_frames_ > 0;
     if (draws || asks_panels) draws = draw_screen(seconds, draws);
-    gui_frames_ = std::max(gui_frames_ - 1, 0);
+    gui_frames_ = std::max(gui_frames_ - 1, int(gui_.has_keys()));
     const uint64_t told = messages.revision();
     live_.end_frame(needs(), {[this] { return finished_now(); }, [this] { return screen(); }});
     if (live_.recording().is_running()) gui_frames_ = std::max(gui_frames_, 1);

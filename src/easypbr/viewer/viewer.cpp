@@ -69,8 +69,11 @@ struct Viewer::Window {
     void open(Vec2i size) {
         window = std::make_unique<gui::Window>(title, size);
         live.set_interrupt([this] { return window && window->has_input(); });
-        live.drawing().clipboard() = {[this] { return window->clipboard(); },
-                                      [this](const std::string& text) { window->set_clipboard(text); }};
+        // Fields of a screenshot use it too, when the window is closed.
+        live.drawing().clipboard() = {[this] { return window ? window->clipboard() : std::string(); },
+                                      [this](const std::string& text) {
+                                          if (window) window->set_clipboard(text);
+                                      }};
     }
 
     /// Seconds since the last call.
