@@ -122,6 +122,30 @@ TEST_F(MotionPanels, KeysArePlacedListedMovedAndRemoved) {
     EXPECT_DOUBLE_EQ(path.path()->duration_s(), 2);
 }
 
+TEST_F(MotionPanels, TheChosenKeyStaysChosenWhereverItIsMoved) {
+    unfold(Panel::camera_path);
+    three_keys();
+    settle();
+    const std::optional<size_t>& chosen = view_.drawing().path().key;
+    click("Camera path/key 3");
+    click("Camera path/up 3");
+    EXPECT_EQ(chosen, 1u);
+    click("Camera path/up 3");
+    EXPECT_EQ(chosen, 2u);
+    click("Camera path/remove 1");
+    EXPECT_EQ(chosen, 1u);
+    click("Camera path/down 1");
+    EXPECT_EQ(chosen, 0u);
+    // The next key comes after it.
+    look_from({9, 9, 9});
+    key('K');
+    const app::PathEditor& path = view_.drawing().path().editor;
+    ASSERT_EQ(path.keys().size(), 3u);
+    EXPECT_LT((path.keys()[1].T_world_cam.translation() - Vec3d(9, 9, 9)).norm(), 1e-12);
+    click("Camera path/remove 2");
+    EXPECT_FALSE(chosen);
+}
+
 TEST_F(MotionPanels, ThePathIsPlayedScrubbedSavedAndLoaded) {
     unfold(Panel::camera_path);
     three_keys();

@@ -49,6 +49,9 @@ struct PathPlan {
 
     /// Chooses a key, and looks from it with the next frame.
     void look_from(size_t key);
+    /// PathEditor::move() and remove(); the chosen key stays chosen, unless it is removed.
+    void move(size_t from, size_t to);
+    void remove(size_t removed);
 };
 
 /// What is asked for, to be done with the next frame.

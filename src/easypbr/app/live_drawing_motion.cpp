@@ -42,6 +42,25 @@ void PathPlan::look_from(size_t chosen) {
         look_at_key = chosen;
 }
 
+void PathPlan::move(size_t from, size_t to) {
+    editor.move(from, to);
+    if (!key) return;
+    if (*key == from)
+        key = to;
+    else if (from < *key && *key <= to)
+        --*key;
+    else if (to <= *key && *key < from)
+        ++*key;
+}
+
+void PathPlan::remove(size_t removed) {
+    editor.remove(removed);
+    if (key == removed)
+        key.reset();
+    else if (key && *key > removed)
+        --*key;
+}
+
 void LiveDrawing::move_along_path(double seconds) {
     const bool moves = path_.editor.advance(seconds);
     const auto key = std::exchange(path_.look_at_key, {});

@@ -21,15 +21,15 @@ struct KeyWish {
 };
 
 void do_wish(GuiState& state, const KeyWish& wish) {
-    app::PathEditor& path = state.path().editor;
+    app::PathPlan& path = state.path();
     const size_t key = wish.key;
     switch (wish.what) {
         case KeyWish::What::none:
             return;
         case KeyWish::What::look:
-            return state.path().look_from(key);
+            return path.look_from(key);
         case KeyWish::What::replace:
-            return path.replace(key, state.session().camera());
+            return path.editor.replace(key, state.session().camera());
         case KeyWish::What::up:
             return path.move(key, key - 1);
         case KeyWish::What::down:

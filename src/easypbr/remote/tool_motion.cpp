@@ -30,9 +30,9 @@ void key_rows(RecordedWidgets& ui, app::LiveDrawing& live, size_t key) {
     ui.same_line();
     const bool goes = ui.button("Remove");
     if (replaces) path.replace(key, live.session().camera());
-    if (rises && key > 0) path.move(key, key - 1), live.path().key = key - 1;
-    if (falls && key + 1 < count) path.move(key, key + 1), live.path().key = key + 1;
-    if (goes) path.remove(key), live.path().key.reset();
+    if (rises && key > 0) live.path().move(key, key - 1);
+    if (falls && key + 1 < count) live.path().move(key, key + 1);
+    if (goes) live.path().remove(key);
 }
 
 void key_list(RecordedWidgets& ui, app::LiveDrawing& live) {
