@@ -66,6 +66,18 @@ def test_who_says_nothing_is_sent_away(server):
     assert 4 < time.monotonic() - begun < 15
 
 
+def test_who_says_nothing_keeps_nobody_out(server, connect):
+    """The oldest of those who have shown no secret makes room."""
+    with contextlib.ExitStack() as ends:
+        silent = [ends.enter_context(socket.create_connection(("127.0.0.1", server.port), timeout=20)) for _ in range(40)]
+        assert fetch(server, "/")[0].status == 200
+        assert is_alive(connect)
+        assert silent[0].recv(1) == b""
+        silent[-1].settimeout(0.2)
+        with pytest.raises(TimeoutError):
+            silent[-1].recv(1)
+
+
 def test_guessing_is_slow(server):
     for _ in range(5):
         Client(server.url, token="0" * 64).until_closed()

@@ -164,13 +164,21 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
     }
 
     void begin(net::generic::stream_protocol::socket socket) {
-        size_t strangers = 0;
-        for (const auto& [id, connection] : connections_) strangers += size_t(connection->is_stranger());
-        if (strangers >= most_strangers) return;  // Closed as it goes out of scope.
+        drop_oldest_stranger();
         const ClientId id = next_++;
         const auto connection = std::make_shared<Connection>(Stream(std::move(socket)), id, *this);
         connections_[id] = connection;
         connection->start();
+    }
+
+    /// Where there are as many as may be: who is silent keeps nobody out.
+    void drop_oldest_stranger() {
+        const auto is_stranger = [](const auto& each) { return each.second->is_stranger(); };
+        if (std::ranges::count_if(connections_, is_stranger) < std::ptrdiff_t(most_strangers)) return;
+        const auto oldest = std::ranges::find_if(connections_, is_stranger);
+        const ClientId id = oldest->first;
+        oldest->second->drop();
+        closed(id);
     }
 
     void say_goodbye() {

@@ -44,7 +44,7 @@ class Network : public Wire {
     /// Limits on messages, bytes, and what a client may leave unread.
     static constexpr size_t most_first_bytes = 4096, most_bytes = 64 * 1024,
                             most_unread_bytes = size_t(8) << 20;
-    /// Connections that have not shown a token yet.
+    /// Connections that have not shown a token yet; one more takes the place of the oldest.
     static constexpr size_t most_strangers = 32;
     static constexpr int token_s = 5, header_s = 10, idle_s = 30;
     static constexpr uint32_t most_header_bytes = 8 * 1024;
