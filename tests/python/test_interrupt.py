@@ -1,5 +1,6 @@
 """Ctrl-C ends what takes long at once and leaves nothing behind; threads that draw do not disturb the end of a program."""
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -58,6 +59,31 @@ def test_render(scene, size, samples):
     assert seconds_until_interrupted(lambda: view.render(samples=samples)) < LIMIT_S
     # Nothing is left behind: the next picture is that of a viewer that was never interrupted.
     np.testing.assert_array_equal(view.render((64, 48), samples=4), Viewer((64, 48), scene=scene).render(samples=4))
+
+
+@pytest.mark.parametrize("is_awaited", [False, True])
+def test_a_coroutine_is_cancelled(scene, is_awaited):
+    """asyncio.run() has a handler of its own from Python 3.11 on: the coroutine may clean up, then it interrupts."""
+    view = Viewer((640, 480), scene=scene)
+    view.render((64, 48), samples=2)
+    raised = []
+
+    async def draw():
+        try:
+            view.render(samples=65536)
+        except BaseException as error:
+            raised.append(type(error))
+            raise
+
+    async def wait():
+        await asyncio.create_task(draw())
+
+    assert seconds_until_interrupted(lambda: asyncio.run(wait() if is_awaited else draw())) < LIMIT_S
+    assert raised == [asyncio.CancelledError if sys.version_info >= (3, 11) else KeyboardInterrupt]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(5)
 
 
 def test_screenshot(scene):

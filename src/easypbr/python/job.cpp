@@ -17,6 +17,7 @@ std::atomic<bool> ending = false;       ///< the interpreter
 std::atomic<int> running = 0;           ///< jobs of threads other than the main one
 struct sigaction python_action;         ///< what SIGINT does while no job watches
 bool is_watching = false;
+bool cancels_task = false;  ///< the handler of Python's that is watched for: it is asyncio's
 unsigned long main_thread;  ///< as Python's threads are numbered on Linux
 pid_t process;
 PyObject *get_handler, *default_handler;  // Never freed: they are used until the interpreter has ended.
@@ -34,11 +35,22 @@ void on_interrupt(int number, siginfo_t* info, void* context) {
         python_action.sa_handler(number);
 }
 
-/// Whether it is Python's handler that waits for SIGINT.
-bool raises_keyboard_interrupt() {
+/// Whether a handler is that of asyncio.run() (Python 3.11 and newer), which cancels the main task.
+bool is_of_asyncio(nb::handle handler) {
+    PyObject* const runners = PyDict_GetItemString(PyImport_GetModuleDict(), "asyncio.runners");
+    if (!runners) return false;
+    const nb::object runner = nb::getattr(runners, "Runner", nb::none());
+    const nb::object wanted = nb::getattr(runner, "_on_sigint", nb::none());
+    const nb::object partial = nb::getattr(handler, "func", nb::none());
+    return !wanted.is_none() && nb::getattr(partial, "__func__", nb::none()).is(wanted);
+}
+
+/// Whether it is a handler of Python's own that waits for SIGINT.
+bool is_python_s_handler() {
     const nb::object handler = nb::steal(PyObject_CallFunction(get_handler, "i", SIGINT));
     if (!handler.is_valid()) throw nb::python_error();
-    return handler.ptr() == default_handler;
+    cancels_task = handler.ptr() != default_handler && is_of_asyncio(handler);
+    return cancels_task || handler.ptr() == default_handler;
 }
 
 void watch() {
@@ -86,7 +98,7 @@ void stay_if_ending() {
 
 Job::Job() {
     if (on_main_thread()) {
-        watches_ = !is_watching && raises_keyboard_interrupt();
+        watches_ = !is_watching && is_python_s_handler();
         if (watches_) watch();
         // Within a callback of another job that one's watch goes on.
         if (is_watching) scope_.emplace([] { return interrupted.load(std::memory_order_relaxed); });
@@ -102,8 +114,13 @@ Job::~Job() {
 }
 
 void Job::raise() {
-    // Python's own handler raises; unless a callback of the job's has met the signal before.
-    if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);
+    // Python's own handler raises; unless a callback of the job's has met the signal before. asyncio's does
+    // not: the task that it cancels shall end as at an await, which asyncio.run() makes a KeyboardInterrupt.
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (on_main_thread() && cancels_task)
+        PyErr_SetNone(nb::module_::import_("asyncio").attr("CancelledError").ptr());
+    else
+        PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw nb::python_error();
 }
 

@@ -10,9 +10,9 @@ namespace easypbr::python {
 
 /// One call of the library. Made and destroyed with the GIL.
 ///
-/// On the main thread a SIGINT ends it where Python's own handler waits for it; a handler of the user's is
-/// called afterwards, as for all functions that are not Python's. On every thread it ends when the
-/// interpreter does.
+/// On the main thread a SIGINT ends it where Python's own handler waits for it, or that of asyncio.run(); a
+/// handler of the user's is called afterwards, as for all functions that are not Python's. On every thread it
+/// ends when the interpreter does.
 class Job {
   public:
     Job();
@@ -20,7 +20,8 @@ class Job {
     Job(const Job&) = delete;
     Job& operator=(const Job&) = delete;
 
-    /// Throws what Python makes of the interruption: KeyboardInterrupt. Needs the GIL.
+    /// Throws what Python makes of the interruption: KeyboardInterrupt, within asyncio.run() CancelledError.
+    /// Needs the GIL.
     [[noreturn]] static void raise();
 
     /// The part without the GIL. Neither begins nor ends, but waits for the end of the process, once the
