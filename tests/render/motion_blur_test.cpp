@@ -100,6 +100,20 @@ TEST(MotionBlur, IsNotThereWithoutShutterTimeOrMemory) {
     }
 }
 
+TEST(MotionBlur, SiblingsOfOneNameAreTwoObjects) {
+    Moving moving;
+    Mesh other = moving.mesh.clone(), parent;
+    other.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 40, 0)));
+    parent.add_child(moving.mesh);
+    parent.add_child(other);
+    moving.scene.show(parent, "square");
+    moving.move(-20);
+    moving.draw(1);
+    expect_profile(moving.draw(64), -20, -20);
+    moving.move(20);
+    expect_profile(moving.draw(64), 0, 20);
+}
+
 TEST(MotionBlur, LeavesLayersAlone) {
     Moving moving;
     moving.move(-20);

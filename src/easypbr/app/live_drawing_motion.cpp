@@ -80,7 +80,7 @@ Session::RefinedMotion LiveDrawing::shown_motion(const Camera& now) const {
     const double frame_s = 1 / form_.fps;
     Motion motion(session_.scene().snapshot(), now);
     const auto moved = player_.motion(frame_s);
-    for (auto& [name, pose] : motion.poses) pose = pose_before(session_.scene(), name, pose, moved);
+    for (auto& [key, pose] : motion.poses) pose = pose_before(session_.scene(), key.name, pose, moved);
     const auto& path = path_.editor.path();
     if (const auto before = recording_.camera_before())
         motion.camera = *before;

@@ -1,15 +1,14 @@
 // Optical flow: where the points of one frame are in another.
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <map>
-#include <string>
-#include <utility>
+#include <vector>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/dataset/flow.h"
 #include "easypbr/dataset/layers.h"
+#include "easypbr/scene/object_key.h"
 
 namespace easypbr::dataset {
 namespace {
@@ -35,16 +34,16 @@ struct Motion {
 
 std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
     std::vector<Motion> all;
-    // By name and by the name of what the scene shows; of siblings of one name, in their order.
-    std::map<std::pair<std::string, std::string>, std::deque<const SceneSnapshot::Object*>> there;
-    for (const auto& object : other.scene.objects) there[{object.root, object.name}].push_back(&object);
-    for (const auto& object : now.scene.objects) {
+    std::map<ObjectKey, const SceneSnapshot::Object*> there;
+    const std::vector<ObjectKey> other_keys = object_keys(other.scene), keys = object_keys(now.scene);
+    for (size_t i = 0; i < other_keys.size(); ++i) there[other_keys[i]] = &other.scene.objects[i];
+    for (size_t i = 0; i < keys.size(); ++i) {
+        const SceneSnapshot::Object& object = now.scene.objects[i];
         Motion motion;
         motion.T_cv_mesh_here = cv_from_mesh(now.camera, object);
         motion.T_mesh_cv = motion.T_cv_mesh_here.inverse();
-        if (auto& same = there[{object.root, object.name}]; !same.empty()) {
-            const SceneSnapshot::Object* const found = same.front();
-            same.pop_front();
+        if (const auto same = there.find(keys[i]); same != there.end()) {
+            const SceneSnapshot::Object* const found = same->second;
             motion.there = found;
             motion.there_number = uint32_t(found - other.scene.objects.data()) + 1;
             motion.T_cv_mesh = cv_from_mesh(other.camera, *found);

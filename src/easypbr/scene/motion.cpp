@@ -16,7 +16,19 @@ Mat3d rotation_between(const Mat3d& from, const Mat3d& to, double t) {
 }  // namespace
 
 Motion::Motion(const SceneSnapshot& scene, const Camera& camera) : camera(camera) {
-    for (const auto& object : scene.objects) poses[object.name] = object.T_world_mesh;
+    const std::vector<ObjectKey> keys = object_keys(scene);
+    for (size_t i = 0; i < keys.size(); ++i) poses[keys[i]] = scene.objects[i].T_world_mesh;
+}
+
+std::vector<Eigen::Affine3d> Motion::poses_before(const SceneSnapshot& scene) const {
+    const std::vector<ObjectKey> keys = object_keys(scene);
+    std::vector<Eigen::Affine3d> before;
+    before.reserve(keys.size());
+    for (size_t i = 0; i < keys.size(); ++i) {
+        const auto known = poses.find(keys[i]);
+        before.push_back(known == poses.end() ? scene.objects[i].T_world_mesh : known->second);
+    }
+    return before;
 }
 
 Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, double t) {

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <map>
-#include <string>
+#include <vector>
 
 #include "easypbr/scene/camera.h"
+#include "easypbr/scene/object_key.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
@@ -12,10 +13,13 @@ namespace easypbr {
 /// Camera and poses of the picture before.
 struct Motion {
     Camera camera;
-    std::map<std::string, Eigen::Affine3d> poses;  ///< T_world_mesh by the object's name
+    std::map<ObjectKey, Eigen::Affine3d> poses;  ///< T_world_mesh
 
     Motion() = default;
     Motion(const SceneSnapshot& scene, const Camera& camera);
+
+    /// Where the objects of a scene were, in their order. What was not there has not moved.
+    std::vector<Eigen::Affine3d> poses_before(const SceneSnapshot& scene) const;
 };
 
 /// The pose at time t between two others, at 0 the first: the rotation turns evenly about one axis (slerp),

@@ -32,15 +32,12 @@ bool shows_more(const DrawItem& item) {
 }
 
 /// Puts the objects where they are at a time between the picture before (0) and this one (1).
-void move_objects(DrawableScene& drawable, const SceneSnapshot& scene, const Motion& motion, double time) {
+void move_objects(DrawableScene& drawable, const SceneSnapshot& scene,
+                  const std::vector<Eigen::Affine3d>& before, double time) {
     for (size_t i = 0; i < scene.objects.size(); ++i) {
-        const SceneSnapshot::Object& object = scene.objects[i];
-        const auto before = motion.poses.find(object.name);
-        // What was not there before does not move.
-        const bool moved = before != motion.poses.end() &&
-                           before->second.matrix() != object.T_world_mesh.matrix() && time < 1;
-        drawable.scene.objects[i].T_world_mesh =
-            moved ? between(before->second, object.T_world_mesh, time) : object.T_world_mesh;
+        const Eigen::Affine3d& now = scene.objects[i].T_world_mesh;
+        const bool moved = before[i].matrix() != now.matrix() && time < 1;
+        drawable.scene.objects[i].T_world_mesh = moved ? between(before[i], now, time) : now;
     }
 }
 
@@ -63,6 +60,7 @@ struct Renderer::Picture {
     DrawList averaged;  ///< of frames that are added up
     DrawList casters;   ///< of everything
     Shot shot;
+    std::vector<Eigen::Affine3d> poses_before;  ///< of the objects, where the shot has motion
     FrameContents contents;
     Frame frame;                  ///< drawn last
     LitPicture lit;               ///< of that frame
@@ -143,6 +141,7 @@ void Renderer::prepare(Picture& picture) {
     const bool accumulated = options.samples > 1;
     picture.shot = shot_of(picture.drawable, picture.resolved, options);
     picture.shot.motion = accumulated ? options.motion.get() : nullptr;
+    if (picture.shot.motion) picture.poses_before = picture.shot.motion->poses_before(picture.scene);
     picture.shot.through_lens = accumulated && resolved.lens_radius > 0;
     if (options.surfaces) {
         keep_surfaces(picture.scene, resolved, options.size, picture.images);
@@ -194,7 +193,7 @@ void Renderer::draw_sample(Picture& picture) {
     Camera camera = camera_of(shot, picture.frames);
     if (shot.motion) {
         const double shutter = picture.resolved.settings.motion_blur.shutter;
-        move_objects(picture.drawable, picture.scene, *shot.motion,
+        move_objects(picture.drawable, picture.scene, picture.poses_before,
                      shutter_time(picture.frames, shot.sample_count, shutter));
     }
     const Box3d& bounds = pipeline_.bounds_of(*shot.scene);
@@ -226,7 +225,7 @@ void Renderer::finish() {
     timer.run("output", [&] {
         output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images), exact);
     });
-    if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
+    if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
     if (picture.contents.custom) draw_custom_over_picture();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)

@@ -1,0 +1,24 @@
+// Which object of one snapshot is which of another.
+#pragma once
+
+#include <compare>
+#include <string>
+#include <vector>
+
+#include "easypbr/scene/scene.h"
+
+namespace easypbr {
+
+/// An object of a scene across its snapshots: the name of what the scene shows, the node's own ("car/wheel"),
+/// and its number among those of both names, for siblings may share a name.
+struct ObjectKey {
+    std::string root, name;
+    int number = 0;
+
+    auto operator<=>(const ObjectKey&) const = default;
+};
+
+/// Of the objects of a snapshot, in their order.
+std::vector<ObjectKey> object_keys(const SceneSnapshot& scene);
+
+}  // namespace easypbr
