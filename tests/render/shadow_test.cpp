@@ -132,7 +132,8 @@ TEST(Shadow, TouchesItsCaster) {
                 session.settings().shadows.resolution = 256;
                 look_from(session, Vec3d(2, 0, 2) * scale, 15);
                 session.settings().camera.target = Vec3d(0.6 * scale, 0, 0);
-                const auto view = render::project_shadows(sun, scene.snapshot().bounds(), 256)->views[0];
+                const auto view =
+                    render::project_shadows(ResolvedLight(sun, 0), scene.snapshot().bounds(), 256)->views[0];
                 const double texel = 1 / (view.scale.minCoeff() * 256);
                 const LitParts lit = lit_parts(session);
                 int near = 0;

@@ -152,7 +152,7 @@ TEST(Resolve, LatchesPinsFollowsAndReleases) {
     Settings fresh;
     fresh.camera.position = latched;
     fresh.camera.target = Vec3d(0, 0, 0);
-    const Vec3 followed = resolve(larger, fresh, size).settings.lights.key.position;
+    const Vec3d followed = resolve(larger, fresh, size).settings.lights.key.position;
     EXPECT_EQ(resolved.settings.lights.key.position, followed);
 
     release(settings);
@@ -238,8 +238,7 @@ TEST(Resolve, PlacesStudioLightsAroundTheContent) {
     const ResolvedSettings resolved = resolve(scene_of(points({{-1, -1, -1}, {1, 1, 1}})), settings, size);
     const double d = 3 * std::sqrt(3.0), c = std::cos(radians(40)) * std::sqrt(0.5);
     const Vec3d key(-c * d, std::sin(radians(40)) * d, c * d);
-    EXPECT_TRUE(resolved.lights[0].position.isApprox(key.cast<float>(), 1e-6f))
-        << resolved.lights[0].position;
+    EXPECT_TRUE(resolved.lights[0].position.isApprox(key, 1e-6)) << resolved.lights[0].position;
     EXPECT_FLOAT_EQ(resolved.lights[0].intensity, float(2.0 * d * d));
     EXPECT_GT(resolved.lights[1].position.x(), 0);
     EXPECT_LT(resolved.lights[2].position.z(), 0);
@@ -250,6 +249,19 @@ TEST(Resolve, PlacesStudioLightsAroundTheContent) {
     const ResolvedSettings dimmed = resolve(scene_of(points({{-1, -1, -1}, {1, 1, 1}})), settings, size);
     ASSERT_EQ(dimmed.lights.size(), 2u);
     EXPECT_FLOAT_EQ(dimmed.lights[0].intensity, float(1.0 * d * d));
+}
+
+// Where a step of single precision is half a metre: the light of something 20 cm large must stand as it does
+// at the origin, up to what the subtraction of two doubles leaves.
+TEST(Resolve, PlacesStudioLightsFarFromTheOrigin) {
+    const Vec3d place(5e5, 4.5e6, 100);
+    Mesh mesh = points({{-0.1f, -0.1f, -0.1f}, {0.1f, 0.1f, 0.1f}});
+    const ResolvedSettings here = resolve(scene_of(mesh), {}, size);
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(place)));
+    Settings settings;
+    latch(settings, resolve(scene_of(mesh), settings, size).settings);
+    const ResolvedSettings there = resolve(scene_of(mesh), settings, size);
+    EXPECT_LT((there.lights[0].position - place - here.lights[0].position).norm(), 1e-8);
 }
 
 TEST(Resolve, TakesTheGivenEnvironmentOrTheStudio) {

@@ -60,7 +60,7 @@ void validate(const Light& light, const std::string& name);
 template <template <class> class MaybeAuto>
 struct BasicStudioLight {
     MaybeAuto<bool> enabled{};     ///< automatic: the key, where no environment map is given
-    MaybeAuto<Vec3> position{};    ///< world units; automatic: 3 content radii away, by the first camera
+    MaybeAuto<Vec3d> position{};   ///< world units; automatic: 3 content radii away, by the first camera
     Vec3 color{1, 1, 1};           ///< sRGB-encoded
     MaybeAuto<float> intensity{};  ///< candela; automatic: the same irradiance at the content at any scale
     bool casts_shadows = true;

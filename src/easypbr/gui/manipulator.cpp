@@ -91,10 +91,10 @@ std::optional<Subject> selected_light(GuiState& state) {
                              : state.selection().light == "rim"  ? &state.settings().lights.rim
                                                                  : nullptr) {
         if (!light->position.value()) return {};
-        const Vec3 position = *light->position;
-        subject.centre = position.cast<double>();
+        const Vec3d position = *light->position;
+        subject.centre = position;
         subject.apply = [light, position](const Eigen::Affine3d& change) {
-            light->position = Vec3((change * position.cast<double>()).cast<float>());
+            light->position = Vec3d(change * position);
         };
         return subject;
     }

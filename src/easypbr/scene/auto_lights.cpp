@@ -54,7 +54,7 @@ struct Incidence {
 Incidence incidence_at(const ResolvedLight& light, const Vec3d& point) {
     const double power = light.intensity * luminance_weights.dot(light.color.cast<double>());
     if (light.type == LightType::directional) return {-light.direction.cast<double>().normalized(), power};
-    const Vec3d to_light = light.position.cast<double>() - point;
+    const Vec3d to_light = light.position - point;
     const double distance = to_light.norm();
     if (!(distance > 0)) return {Vec3d::Zero(), 0};
     const Vec3d direction = to_light / distance;
@@ -83,7 +83,7 @@ std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const C
         if (!studio.position.value() || !studio.intensity.value()) {
             const double distance = light_distance * content.radius();
             const Vec3d direction = placed_direction(placement, level_direction(camera, up), up);
-            fill(studio.position, Vec3((content.centre() + direction * distance).cast<float>()));
+            fill(studio.position, Vec3d(content.centre() + direction * distance));
             fill(studio.intensity, float(placement.irradiance * distance * distance));
         }
         if (!studio.radius.value()) fill(studio.radius, float(studio_light_part * content.radius()));

@@ -88,7 +88,7 @@ void resolve_exposure(const detail::Content& content, Settings& settings, Resolv
 bool is_representable(const ResolvedSettings& resolved) {
     const auto holds = [](const ResolvedLight& light) {
         const bool has_place = light.type == LightType::directional ||
-                               (light.position.allFinite() && std::isfinite(light.radius));
+                               (light.position.cast<float>().allFinite() && std::isfinite(light.radius));
         return has_place && std::isfinite(light.intensity);
     };
     return resolved.camera.T_world_cam.matrix().cast<float>().allFinite() &&

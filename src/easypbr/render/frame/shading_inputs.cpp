@@ -33,7 +33,7 @@ blocks::Light light_uniform(const ResolvedLight& light, const Vec3d& origin, dou
     const auto scale_of_light = float(light.type == LightType::directional ? 1.0 : 1 / (unit * unit));
     const auto range = float(light.range / unit);
     blocks::Light to;
-    to.position << ((light.position.cast<double>() - origin) / unit).cast<float>(), light_code(light.type);
+    to.position << ((light.position - origin) / unit).cast<float>(), light_code(light.type);
     to.color << light.color * (light.intensity * scale_of_light), range > 0 ? 1 / (range * range) : 0.0f;
     if (is_area(light.type)) {
         add_area(light, unit, to);

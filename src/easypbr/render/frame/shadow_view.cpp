@@ -61,7 +61,7 @@ double distance_to(const Box3d& box, const Vec3d& point) {
     return std::sqrt(box.squaredExteriorDistance(point));
 }
 
-ShadowProjection parallel(const LightSource& light, const Box3d& casters, int resolution) {
+ShadowProjection parallel(const ResolvedLight& light, const Box3d& casters, int resolution) {
     ShadowProjection projection;
     ShadowView& view = projection.views[0];
     view.perspective = false;
@@ -101,8 +101,9 @@ ShadowProjection cube(const Vec3d& position, const Box3d& casters) {
 }
 
 /// One perspective view towards the casters, or along a spot; nothing when neither sees enough.
-std::optional<ShadowProjection> perspective(const LightSource& light, const Box3d& casters, int resolution) {
-    const Vec3d position = light.position.cast<double>();
+std::optional<ShadowProjection> perspective(const ResolvedLight& light, const Box3d& casters,
+                                            int resolution) {
+    const Vec3d& position = light.position;
     const double diagonal = casters.diagonal().norm();
     ShadowProjection projection;
     ShadowView& view = projection.views[0];
@@ -179,12 +180,12 @@ Mat4d ShadowView::clip_from_world() const {
     return clip * local;
 }
 
-std::optional<ShadowProjection> project_shadows(const LightSource& light, const Box3d& casters,
+std::optional<ShadowProjection> project_shadows(const ResolvedLight& light, const Box3d& casters,
                                                 int resolution) {
     if (casters.isEmpty() || !(casters.diagonal().norm() > 0)) return std::nullopt;
     if (light.type == LightType::directional) return parallel(light, casters, resolution);
     if (auto single = perspective(light, casters, resolution)) return single;
-    return cube(light.position.cast<double>(), casters);
+    return cube(light.position, casters);
 }
 
 unsigned needed_maps(const ShadowProjection& projection, const Box3d& receivers) {
@@ -219,10 +220,9 @@ ResolvedLight sampled_light(const ResolvedLight& light, int index, int count) {
         Vec2d at(2 * u.x() - 1, 2 * u.y() - 1);
         if (light.type == LightType::disc)
             at = std::sqrt(u.x()) * Vec2d(std::cos(2 * pi * u.y()), std::sin(2 * pi * u.y()));
-        sampled.position = (light.position.cast<double>() + axes.x * at.x() + axes.y * at.y()).cast<float>();
+        sampled.position = light.position + axes.x * at.x() + axes.y * at.y();
     } else {
-        const Vec3d offset = double(light.radius) * disc_like_point(spread_point(index));
-        sampled.position = (light.position.cast<double>() + offset).cast<float>();
+        sampled.position = light.position + double(light.radius) * disc_like_point(spread_point(index));
     }
     return sampled;
 }

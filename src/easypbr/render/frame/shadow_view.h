@@ -40,7 +40,7 @@ inline constexpr double cube_slope = 1.1;
 /// Fits maps of `resolution` texels to the casters' bounds: a parallel view for directional lights, one
 /// perspective view for spots and for lights that see all casters within 60 degrees of one direction, a cube
 /// for others. Nothing when the bounds are empty or have no extent.
-std::optional<ShadowProjection> project_shadows(const LightSource& light, const Box3d& casters,
+std::optional<ShadowProjection> project_shadows(const ResolvedLight& light, const Box3d& casters,
                                                 int resolution);
 
 /// The maps that a light at `position` needs for surfaces within a box, as bits: faces of a cube that see any

@@ -141,7 +141,7 @@ PathLights::Area PathLights::area_of(const ResolvedLight& light, const RayScene&
     const double unit = scene.unit();
     Area area;
     area.type = light.type;
-    area.centre = ((light.position.cast<double>() - scene.centre()) / unit).cast<float>();
+    area.centre = ((light.position - scene.centre()) / unit).cast<float>();
     area.radiance = light.color * light.intensity;
     area.radius = float(double(light.radius) / unit);
     area.area = float(emitting_area(light) / (unit * unit));

@@ -39,7 +39,7 @@ struct AreaPoint {
 
 /// Of a sphere one in the cone in which it is seen, else one of its area.
 AreaPoint area_point(const ResolvedLight& light, const Vec3d& place, const Vec2& u) {
-    const Vec3d centre = light.position.cast<double>() - place;
+    const Vec3d centre = light.position - place;
     const double phi = 2 * pi * double(u.y());
     if (light.type == LightType::sphere) {
         const double r2 = double(light.radius) * double(light.radius), d2 = centre.squaredNorm();
@@ -127,9 +127,8 @@ Vec3 RayLight::from_lights(const RayHit& hit, const Vec3& normal) const {
     for (const ResolvedLight& light : resolved_->lights) {
         if (is_area(light.type)) continue;
         const bool parallel = light.type == LightType::directional;
-        const Vec3 towards =
-            parallel ? Vec3(-light.direction.normalized())
-                     : Vec3((light.position.cast<double>() - scene_->centre()).cast<float>() / unit - at);
+        const Vec3 towards = parallel ? Vec3(-light.direction.normalized())
+                                      : Vec3((light.position - scene_->centre()).cast<float>() / unit - at);
         const float distance = towards.norm();
         if (!(distance > 0)) continue;
         const Vec3 l = towards / distance;

@@ -81,8 +81,8 @@ double ReceivedLight::left(const Place& place, const Vec3& direction, double dis
 
 ReceivedLight::Sum ReceivedLight::from_lamp(const ResolvedLight& light, const Place& place) const {
     const bool parallel = light.type == LightType::directional;
-    const Vec3d towards = parallel ? Vec3d(-light.direction.cast<double>())
-                                   : Vec3d(light.position.cast<double>() - place.world);
+    const Vec3d towards =
+        parallel ? Vec3d(-light.direction.cast<double>()) : Vec3d(light.position - place.world);
     const double distance = towards.norm();
     if (!(distance > 0)) return {};
     const Vec3d l = towards / distance;

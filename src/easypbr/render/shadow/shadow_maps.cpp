@@ -32,8 +32,7 @@ constexpr double slack = 0.01;
 /// Whether a light reaches a box at all: beyond its range it is zero.
 bool reaches(const ResolvedLight& light, const Box3d& box) {
     if (light.type == LightType::directional || is_area(light.type) || !(light.range > 0)) return true;
-    return box.squaredExteriorDistance(light.position.cast<double>()) <=
-           double(light.range) * double(light.range);
+    return box.squaredExteriorDistance(light.position) <= double(light.range) * double(light.range);
 }
 
 /// What softens a light's shadows: its radius, or the tangent of a directional light's; of a rectangle the
@@ -120,10 +119,10 @@ ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Fra
     request.needed = bounded ? needed_maps(*projection, lit) : (1u << projection->count) - 1;
     // What one sample stands for is as large a part of the light as it is of all samples.
     request.radius = extent / std::sqrt(double(samples));
-    const Vec3 position = light.type == LightType::directional ? Vec3(Vec3::Zero()) : sampled.position,
-               direction = light.type == LightType::point ? Vec3(Vec3::Zero()) : sampled.direction;
-    request.key = {float(light.type), position.x(),  position.y(),  position.z(),
-                   direction.x(),     direction.y(), direction.z(), light.outer_cone_deg};
+    const Vec3d position = light.type == LightType::directional ? Vec3d(Vec3d::Zero()) : sampled.position;
+    const Vec3 direction = light.type == LightType::point ? Vec3(Vec3::Zero()) : sampled.direction;
+    request.key = {double(light.type), position.x(),  position.y(),  position.z(),
+                   direction.x(),      direction.y(), direction.z(), light.outer_cone_deg};
     return request;
 }
 

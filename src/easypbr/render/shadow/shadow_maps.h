@@ -58,7 +58,7 @@ class ShadowMaps {
 
   private:
     /// All that decides about a light's maps, but what casts.
-    using LightKey = std::array<float, 9>;
+    using LightKey = std::array<double, 9>;
     struct Entry {
         int first_layer = 0, layers = 0;
         uint64_t casters = 0;     ///< generation of the casters that it shows
