@@ -123,6 +123,19 @@ def test_geometry_and_files(tmp_path):
     np.testing.assert_allclose(Mesh(tmp_path / "ball.ply").V, ball.V, atol=1e-6)
 
 
+def test_loops_of_one_thread_and_calls_into_other_libraries():
+    ball = shapes.icosphere(1, 9)
+    points = Mesh(np.random.default_rng(1).random((3_000_000, 3)))
+    for work in (
+        points.oriented_bounding_box,
+        lambda: ball.decimate(faces=2000),
+        ball.remove_duplicate_vertices,
+        ball.face_components,
+        ball.split,
+    ):
+        assert seconds_until_interrupted(lambda work=work: [work() for _ in range(1000)]) < LIMIT_S
+
+
 def test_files_that_assimp_never_ends(tmp_path):
     (tmp_path / "endless.smd").write_text("version 1\nnodes\n0\n")
     try:

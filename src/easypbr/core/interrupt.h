@@ -1,6 +1,7 @@
 // How a long job is given up: it asks between its steps whether it is to go on.
 #pragma once
 
+#include <cstddef>
 #include <exception>
 #include <functional>
 
@@ -34,6 +35,11 @@ class InterruptScope {
 /// Throws Interrupted when the thread's InterruptScope says so. Parallel loops, samples, tiles and waits for
 /// the driver call it.
 void check_interrupt();
+
+/// The same at some steps of a loop whose steps are short.
+inline void check_interrupt(size_t step) {
+    if (step % (size_t(1) << 16) == 0) check_interrupt();
+}
 
 /// Whether anybody may interrupt this thread.
 bool can_be_interrupted();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "easypbr/core/interrupt.h"
 #include "easypbr/geometry/disjoint_sets.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
@@ -17,6 +18,7 @@ Array1i numbered(Eigen::Index count, size_t values, Of&& value_of) {
     Array1i::Dense result(count);
     int32_t next = 0;
     for (Eigen::Index i = 0; i < count; ++i) {
+        check_interrupt(size_t(i));
         int32_t& known = number[size_t(value_of(i))];
         if (known < 0) known = next++;
         result[i] = known;
@@ -29,11 +31,14 @@ class Pieces {
   public:
     explicit Pieces(const MeshData& mesh) : weld_(geometry::weld_positions(mesh.V)), sets_(weld_.count()) {
         for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
+            check_interrupt(size_t(f));
             sets_.unite(place(mesh.F(f, 0)), place(mesh.F(f, 1)));
             sets_.unite(place(mesh.F(f, 0)), place(mesh.F(f, 2)));
         }
-        for (Eigen::Index e = 0; e < mesh.E.rows(); ++e)
+        for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+            check_interrupt(size_t(e));
             sets_.unite(place(mesh.E(e, 0)), place(mesh.E(e, 1)));
+        }
     }
 
     int32_t of(Eigen::Index vertex) { return sets_.find(place(int32_t(vertex))); }
@@ -81,6 +86,7 @@ std::vector<Mesh> split(const Mesh& mesh) {
     selection.place.assign(size_t(data->V.rows()), -1);
     std::vector<Mesh> result;
     for (size_t piece = 0; piece < count; ++piece) {
+        check_interrupt();
         if (faces[piece].empty() && edges[piece].empty()) continue;
         selection.vertices = vertices[piece];
         for (size_t i = 0; i < selection.vertices.size(); ++i)

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "easypbr/core/interrupt.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/scene/merge.h"
@@ -13,6 +15,52 @@ namespace easypbr {
 namespace {
 
 using BoxPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// The points that are not inside a star of tetrahedra between the farthest ones along 26 directions and
+/// their mean: as these lie within the convex hull, no corner of it is left out (Akl and Toussaint 1978).
+BoxPoints outer_points(const BoxPoints& points) {
+    const Vec3d size = (points.colwise().maxCoeff() - points.colwise().minCoeff()).transpose();
+    if (!(size.minCoeff() > 0)) return points;
+    std::array<Vec3d, 27> extremes;  // of direction (x, y, z) in -1 .. 1 at 9 x + 3 y + z + 13
+    for (int i = 0; i < 27; ++i) {
+        check_interrupt();
+        const Vec3d direction = Vec3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).cwiseQuotient(size);
+        Eigen::Index farthest = 0;
+        (points * direction).maxCoeff(&farthest);
+        extremes[size_t(i)] = points.row(farthest).transpose();
+    }
+    Vec3d centre = Vec3d::Zero();
+    for (int i = 0; i < 27; ++i)
+        if (i != 13) centre += extremes[size_t(i)] / 26;
+    std::vector<Mat3d> to_barycentrics;
+    // Of each triangle of a cube's faces: middle of the face, middle of an edge, corner.
+    for (int face = 0; face < 6; ++face)
+        for (int which = 0; which < 8; ++which) {
+            const int axis = face / 2, steps[3] = {9, 3, 1}, first = (axis + 1 + which / 4) % 3,
+                      second = 3 - axis - first;
+            const int middle = 13 + steps[axis] * (face % 2 ? 1 : -1),
+                      edge = middle + steps[first] * (which % 2 ? 1 : -1),
+                      corner = edge + steps[second] * (which / 2 % 2 ? 1 : -1);
+            Mat3d edges;
+            edges << extremes[size_t(middle)] - centre, extremes[size_t(edge)] - centre,
+                extremes[size_t(corner)] - centre;
+            const double volume = std::abs(edges.determinant());
+            if (volume > 1e-6 * edges.colwise().norm().prod()) to_barycentrics.emplace_back(edges.inverse());
+        }
+    std::vector<char> is_outer(static_cast<size_t>(points.rows()));
+    parallel_for(is_outer.size(), size_t(1) << 12, [&](size_t i) {
+        const Vec3d place = points.row(Eigen::Index(i)).transpose() - centre;
+        is_outer[i] = std::ranges::none_of(to_barycentrics, [&](const Mat3d& matrix) {
+            const Vec3d weights = matrix * place;
+            return weights.minCoeff() >= 0 && weights.sum() < 1 - 1e-9;
+        });
+    });
+    BoxPoints outer(std::ranges::count(is_outer, char(1)), 3);
+    Eigen::Index row = 0;
+    for (size_t i = 0; i < is_outer.size(); ++i)
+        if (is_outer[i]) outer.row(row++) = points.row(Eigen::Index(i));
+    return outer;
+}
 
 double cross(const Vec2d& a, const Vec2d& b) {
     return a.x() * b.y() - a.y() * b.x();
@@ -119,6 +167,7 @@ bool is_smaller(const Vec3d& a, const Vec3d& b) {
 Mat3d refined_axes(const BoxPoints& points, Mat3d axes) {
     Vec3d size = extent(points, axes);
     for (int kept = 0, unchanged = 0; unchanged < 3; kept = (kept + 1) % 3, ++unchanged) {
+        check_interrupt();
         const Vec3d u = axes.col((kept + 1) % 3), v = axes.col((kept + 2) % 3);
         std::vector<Vec2d> projected(static_cast<size_t>(points.rows()));
         for (Eigen::Index i = 0; i < points.rows(); ++i)
@@ -162,6 +211,7 @@ OrientedBox oriented_bounding_box(const Mesh& mesh) {
     points.rowwise() -= mean;
     const Mat3d covariance = points.transpose() * points;
     const Mat3d principal = Eigen::SelfAdjointEigenSolver<Mat3d>(covariance).eigenvectors();
+    points = outer_points(points);
     const Mat3d candidates[2] = {refined_axes(points, principal), refined_axes(points, Mat3d::Identity())};
     const bool first = is_smaller(extent(points, candidates[0]), extent(points, candidates[1]));
     OrientedBox box = box_along(points, candidates[first ? 0 : 1]);

@@ -1,14 +1,14 @@
 #include "easypbr/geometry/repair.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <unordered_map>
 
+#include "easypbr/core/interrupt.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
@@ -25,14 +25,14 @@ using Ids = std::vector<uint32_t>;
 /// Ids that are equal where they were and the rows (of `size` bytes) are, byte for byte.
 void refine(Ids& ids, const void* rows, size_t size) {
     const size_t stride = sizeof(uint32_t) + size;
-    std::vector<char> keys(ids.size() * stride);
+    const auto keys = std::make_shared<std::vector<char>>(ids.size() * stride);
     for (size_t i = 0; i < ids.size(); ++i) {
-        std::memcpy(keys.data() + i * stride, &ids[i], sizeof(uint32_t));
-        std::memcpy(keys.data() + i * stride + sizeof(uint32_t), static_cast<const char*>(rows) + i * size,
-                    size);
+        check_interrupt(i);
+        char* const key = keys->data() + i * stride;
+        std::memcpy(key, &ids[i], sizeof(uint32_t));
+        std::memcpy(key + sizeof(uint32_t), static_cast<const char*>(rows) + i * size, size);
     }
-    if (!ids.empty())
-        meshopt_generateVertexRemap(ids.data(), nullptr, ids.size(), keys.data(), ids.size(), stride);
+    ids = geometry::numbered_rows({keys, keys->data()}, ids.size(), stride);
 }
 
 template <class A>
@@ -59,6 +59,7 @@ Ids attribute_ids(const MeshData& mesh) {
 std::vector<int32_t> first_of_each(const Ids& ids) {
     std::vector<int32_t> first(ids.size(), -1), result(ids.size());
     for (size_t i = 0; i < ids.size(); ++i) {
+        check_interrupt(i);
         int32_t& known = first[ids[i]];
         if (known < 0) known = int32_t(i);
         result[i] = known;
@@ -122,7 +123,10 @@ std::vector<int32_t> representatives(const MeshData& mesh, const DuplicateOption
     }
     Representatives known(mesh, ids, options.tolerance);
     std::vector<int32_t> result(ids.size());
-    for (size_t i = 0; i < ids.size(); ++i) result[i] = known.of(int32_t(i));
+    for (size_t i = 0; i < ids.size(); ++i) {
+        check_interrupt(i);
+        result[i] = known.of(int32_t(i));
+    }
     return result;
 }
 
@@ -168,6 +172,7 @@ Mesh remove_duplicate_vertices(const Mesh& mesh, const DuplicateOptions& options
     Selection selection = geometry::select_all(*data);
     selection.vertices.clear();
     for (size_t i = 0; i < first.size(); ++i) {
+        check_interrupt(i);
         const bool stays = first[i] == int32_t(i);
         selection.place[i] = stays ? int32_t(selection.vertices.size()) : selection.place[size_t(first[i])];
         if (stays) selection.vertices.push_back(int32_t(i));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/geometry/awaited.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
 
@@ -23,16 +24,19 @@ void require(const DecimateOptions& options) {
 }
 
 /// What is left of a range of faces. `relative_error` is in units of the mesh's extent.
-std::vector<unsigned int> simplified(const MeshData& mesh, int first_face, int face_count,
-                                     size_t target_faces, float relative_error, bool lock_borders) {
-    const auto* indices = reinterpret_cast<const unsigned int*>(mesh.F.data()) + 3 * size_t(first_face);
-    std::vector<unsigned int> result(3 * size_t(face_count));
-    const size_t count =
-        meshopt_simplify(result.data(), indices, result.size(), mesh.V.data(), size_t(mesh.V.rows()),
-                         3 * sizeof(float), 3 * std::min(target_faces, size_t(face_count)), relative_error,
-                         lock_borders ? meshopt_SimplifyLockBorder : 0, nullptr);
-    result.resize(count);
-    return result;
+std::vector<unsigned int> simplified(const std::shared_ptr<const MeshData>& mesh, int first_face,
+                                     int face_count, size_t target_faces, float relative_error,
+                                     bool lock_borders) {
+    return geometry::awaited(size_t(face_count), [=] {
+        const auto* indices = reinterpret_cast<const unsigned int*>(mesh->F.data()) + 3 * size_t(first_face);
+        std::vector<unsigned int> result(3 * size_t(face_count));
+        const size_t count =
+            meshopt_simplify(result.data(), indices, result.size(), mesh->V.data(), size_t(mesh->V.rows()),
+                             3 * sizeof(float), 3 * std::min(target_faces, size_t(face_count)),
+                             relative_error, lock_borders ? meshopt_SimplifyLockBorder : 0, nullptr);
+        result.resize(count);
+        return result;
+    });
 }
 
 }  // namespace
@@ -55,7 +59,7 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
     for (MeshPart& part : parts) {
         const double share = double(part.face_count) / double(all);
         const auto part_target = has_parts ? size_t(std::llround(share * double(target))) : target;
-        const auto left = simplified(*data, part.first_face, part.face_count, part_target, error, has_parts);
+        const auto left = simplified(data, part.first_face, part.face_count, part_target, error, has_parts);
         part.first_face = int(indices.size() / 3);
         part.face_count = int(left.size() / 3);
         indices.insert(indices.end(), left.begin(), left.end());

@@ -1,12 +1,18 @@
 // Which vertices are at the same place.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::geometry {
+
+/// For each of `count` rows of `size` bytes a number, the same for rows of the same bytes: from 0 in the
+/// order in which they first occur. Throws Interrupted.
+std::vector<unsigned int> numbered_rows(std::shared_ptr<const void> rows, size_t count, size_t size);
 
 struct Weld {
     std::vector<int32_t> place;  ///< for each vertex the number of its position, from 0
