@@ -10,7 +10,8 @@ vec3 arriving(Light light, vec3 position, out vec3 l) {
     l = to_light * inversesqrt(max(d2, 1e-30));
     float falloff = 1.0;
     if (light.position.w > 0.5) {
-        float window = clamp(1.0 - d2 * d2 * light.color.w * light.color.w, 0.0, 1.0);
+        float reached = d2 * light.color.w;  // Squared alone, d2 leaves single precision.
+        float window = clamp(1.0 - reached * reached, 0.0, 1.0);
         falloff = window * window / max(d2, 1e-30);
     }
     if (light.position.w > 1.5) {

@@ -23,25 +23,30 @@ Vec3 plane_point(int x, int y, int size, double distance, double fov_deg) {
 // Lambert: L = albedo I cos / (pi d^2). F0 = 0 leaves the diffuse part alone: kd = 1 - (F0 A + B) - ..., so
 // B, the Fresnel part at grazing angles, is left out by switching multiple scattering off and comparing near
 // the axis, where B < 0.001. 0.5 % is the required bound.
+// At 2^33 squares of squared distances leave single precision.
 TEST(Lighting, LambertUnderAPointLight) {
-    Scene scene;
-    scene.show(facing_square(1, diffuse(0.5f)), "square");
-    Light light;
-    light.position = Vec3(0.3f, 0.2f, 2);
-    light.intensity = 7;
-    scene.set_light("point", light);
-    app::Session session = plain_session(scene);
-    session.settings().shading.dielectric_f0 = 0;
-    session.settings().shading.multiple_scattering = false;
-    look_from(session, Vec3d(0, 0, 5), 20);
-    const Image image = render_linear(session);
-    for (int y = 8; y < 56; y += 8)
-        for (int x = 8; x < 56; x += 8) {
-            const Vec3 to_light = light.position - plane_point(x, y, 64, 5, 20);
-            const double d2 = to_light.squaredNorm(), cosine = to_light.z() / std::sqrt(d2);
-            // What is left of the specular lobe at roughness 1 and F0 = 0 is below 0.1 % here: (1 - VoH)^5.
-            EXPECT_NEAR(image.at<float>(x, y)[0] / (0.5 * light.intensity * cosine / (pi * d2)), 1, 0.005);
-        }
+    for (const float scale : {1.0f, 0x1p33f}) {
+        Scene scene;
+        scene.show(facing_square(scale, diffuse(0.5f)), "square");
+        Light light;
+        light.position = scale * Vec3(0.3f, 0.2f, 2);
+        light.intensity = 7 * scale * scale;
+        scene.set_light("point", light);
+        app::Session session = plain_session(scene);
+        session.settings().shading.dielectric_f0 = 0;
+        session.settings().shading.multiple_scattering = false;
+        look_from(session, Vec3d(0, 0, 5) * scale, 20);
+        const Image image = render_linear(session);
+        for (int y = 8; y < 56; y += 8)
+            for (int x = 8; x < 56; x += 8) {
+                const Vec3 to_light = light.position - plane_point(x, y, 64, 5 * double(scale), 20);
+                const double d2 = to_light.squaredNorm(), cosine = to_light.z() / std::sqrt(d2);
+                // What is left of the specular lobe at roughness 1 and F0 = 0 is below 0.1 % here:
+                // (1 - VoH)^5.
+                EXPECT_NEAR(image.at<float>(x, y)[0] / (0.5 * light.intensity * cosine / (pi * d2)), 1, 0.005)
+                    << scale;
+            }
+    }
 }
 
 TEST(Lighting, DirectionalAndSpot) {
