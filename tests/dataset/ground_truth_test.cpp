@@ -233,6 +233,31 @@ TEST(GroundTruth, FacesWeightsAndUv) {
     EXPECT_GT(seen, 800);
 }
 
+// A sphere that its pose flattens to a disc of radius 1: the axis that is left out has no extent.
+TEST(GroundTruth, OfWhatItsPoseFlattens) {
+    Mesh disc = make_sphere(1, 64);
+    disc.set_T_parent_mesh(Eigen::Affine3d(Eigen::Scaling(1.0, 1.0, 0.0)));
+    Scene scene;
+    scene.show(disc, "disc");
+    app::Session session = plain_session(scene, 50);
+    look_from(session, Vec3d(0, 0, 4), 35);
+    TruthOptions options = with_instances({50, 50});
+    const GroundTruth truth =
+        ground_truth(session, {"position", "object_coordinates", "instance_id"}, options);
+    const Instance& found = named(truth, "disc");
+    EXPECT_LT((found.box.sizes() - Vec3d(2, 2, 0)).norm(), 1e-2);
+    EXPECT_LT(found.corners_world.col(2).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT(found.corners_px.row(0).x(), found.corners_px.row(7).x());
+    const double diagonal = found.box.diagonal().norm();
+    for (size_t i = 0; i < 2500; ++i) {
+        if (!truth.layers.at("instance_id").integers()[i]) continue;
+        const float *p = &truth.layers.at("position").floats()[3 * i],
+                    *coordinates = &truth.layers.at("object_coordinates").floats()[3 * i];
+        EXPECT_NEAR(coordinates[0], 0.5 + p[0] / diagonal, 1e-5);
+        EXPECT_NEAR(coordinates[2], 0.5, 1e-5);
+    }
+}
+
 // Through a lens with distortion and skew every pixel's point is on the ray that the lens's formula gives.
 TEST(GroundTruth, DistortionAppliesToEveryLayer) {
     const Vec2i size(160, 120);
@@ -346,6 +371,27 @@ TEST(GroundTruth, InstancesAreObjectsOrNodes) {
     ASSERT_EQ(nodes.instances.size(), 2u);
     EXPECT_LT(nodes.instances[0].visible_fraction, 1);
     EXPECT_EQ(nodes.instances[1].visible_fraction, 1);
+}
+
+TEST(GroundTruth, NodesOfOneNameAreNumbered) {
+    Scene scene;
+    Mesh row;
+    for (int i = 0; i < 4; ++i) {
+        Mesh wheel = moved(facing_square(0.1), {i - 1.5, 0, 0});
+        wheel.edit([](MeshData& data) { data.name = "wheel"; });
+        row.add_child(wheel);
+    }
+    scene.show(row, "row");
+    scene.show(moved(facing_square(0.1), {0, 1, 0}), "row/wheel#3");
+    app::Session session = plain_session(scene, 40);
+    look_from(session, Vec3d(0, 0, 5), 35);
+    TruthOptions options = with_instances({40, 40});
+    options.instances_by = InstancesBy::node;
+    std::vector<std::string> names;
+    for (const Instance& instance : ground_truth(session, {}, options).instances)
+        names.push_back(instance.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"row", "row/wheel", "row/wheel#2", "row/wheel#4",
+                                               "row/wheel#5", "row/wheel#3"}));
 }
 
 // A child "b" of "a", and what the scene shows as "a/b": two instances, however they are told apart. The

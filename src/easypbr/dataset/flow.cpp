@@ -41,13 +41,13 @@ std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
         const SceneSnapshot::Object& object = now.scene.objects[i];
         Motion motion;
         motion.T_cv_mesh_here = cv_from_mesh(now.camera, object);
-        motion.T_mesh_cv = motion.T_cv_mesh_here.inverse();
+        motion.T_mesh_cv = inverse_pose(motion.T_cv_mesh_here);
         if (const auto same = there.find(keys[i]); same != there.end()) {
             const SceneSnapshot::Object* const found = same->second;
             motion.there = found;
             motion.there_number = uint32_t(found - other.scene.objects.data()) + 1;
             motion.T_cv_mesh = cv_from_mesh(other.camera, *found);
-            motion.T_mesh_cv_there = motion.T_cv_mesh.inverse();
+            motion.T_mesh_cv_there = inverse_pose(motion.T_cv_mesh);
             motion.same_elements = found->mesh->F.rows() == object.mesh->F.rows() &&
                                    found->mesh->V.rows() == object.mesh->V.rows();
             motion.same_faces =

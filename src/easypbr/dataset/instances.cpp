@@ -315,10 +315,14 @@ InstanceTable::InstanceTable(const SceneSnapshot& scene, InstancesBy by,
         instances_.push_back(instance);
         return instances_.size() - 1;
     };
+    std::map<std::string, int> numbers;  // the last that was given to a name
     /// With a number where another instance, or what the scene shows, has the name.
     const auto free_name = [&](const std::string& name) {
         std::string free = name;
-        for (int number = 2; !taken.insert(free).second; ++number) free = fmt::format("{}#{}", name, number);
+        if (taken.insert(free).second) return free;
+        int& number = numbers.try_emplace(name, 1).first->second;
+        do free = fmt::format("{}#{}", name, ++number);
+        while (!taken.insert(free).second);
         return free;
     };
     for (const auto& object : scene.objects) {
@@ -357,7 +361,7 @@ InstanceTable::InstanceTable(const Surfaces& s, InstancesBy by, const std::map<s
 void InstanceTable::extend(size_t place, const SceneSnapshot::Object& object, const MeshPart* part,
                            double voxel_size) {
     Instance& instance = instances_[place];
-    const Eigen::Affine3d T_obj_mesh = instance.T_world_obj.inverse() * object.T_world_mesh;
+    const Eigen::Affine3d T_obj_mesh = inverse_pose(instance.T_world_obj) * object.T_world_mesh;
     if (voxel_size > 0)
         extend_by_voxels(instance.box, T_obj_mesh, *object.mesh, voxel_size);
     else

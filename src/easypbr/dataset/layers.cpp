@@ -76,7 +76,7 @@ LayerArray object_coordinates(const Surfaces& s, const InstanceTable& table) {
         Eigen::Affine3d to_unit = Eigen::Affine3d::Identity();
         const Vec3d centre = instance.box.isEmpty() ? Vec3d(Vec3d::Zero()) : Vec3d(instance.box.center());
         to_unit.translate(Vec3d::Constant(0.5)).scale(diagonal > 0 ? 1 / diagonal : 1).translate(-centre);
-        T_obj_cv.push_back(to_unit * instance.T_world_obj.inverse() * T_world_cv);
+        T_obj_cv.push_back(to_unit * inverse_pose(instance.T_world_obj) * T_world_cv);
         const Vec3d half = instance.box.isEmpty() ? Vec3d(Vec3d::Zero())
                                                   : Vec3d((to_unit * instance.box.max()).array() - 0.5);
         boxes.emplace_back(Vec3d(Vec3d::Constant(0.5) - half), Vec3d(Vec3d::Constant(0.5) + half));

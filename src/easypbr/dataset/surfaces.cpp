@@ -1,5 +1,6 @@
 #include "easypbr/dataset/surfaces.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -102,6 +103,15 @@ RaySlopes ray_slopes(const Camera& camera, Vec2i size) {
 
 Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& object) {
     return Eigen::Affine3d(camera.opencv_T_world_cam()).inverse(Eigen::Isometry) * object.T_world_mesh;
+}
+
+Eigen::Affine3d inverse_pose(const Eigen::Affine3d& T) {
+    const Eigen::CompleteOrthogonalDecomposition<Mat3d> linear(T.linear());
+    if (linear.rank() == 3) return T.inverse();
+    Eigen::Affine3d inverse = Eigen::Affine3d::Identity();
+    inverse.linear() = linear.pseudoInverse();
+    inverse.translation() = -inverse.linear() * T.translation();
+    return inverse;
 }
 
 Vec2d project(const Camera& camera, Vec2i size, const Vec3d& p) {

@@ -39,6 +39,9 @@ RaySlopes ray_slopes(const Camera& camera, Vec2i size);
 /// From the camera's frame (OpenCV's axes) to the frame of an object's V.
 Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& object);
 
+/// The inverse of a pose; of one that flattens, the pseudoinverse: axes that it flattens are 0.
+Eigen::Affine3d inverse_pose(const Eigen::Affine3d& T);
+
 /// Pixel (centres at integers) of a point in the camera's frame with z > 0, through the lens.
 Vec2d project(const Camera& camera, Vec2i size, const Vec3d& point_cv);
 
