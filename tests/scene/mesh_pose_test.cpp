@@ -120,6 +120,27 @@ TEST(MeshPose, AMeshHasOneParent) {
     b.add_child(child);
 }
 
+TEST(MeshPose, ParentsFollowAnyChangeOfTheList) {
+    Mesh parent, a, b, c;
+    const auto has_parent = [&](const Mesh& mesh) {
+        const std::optional<Mesh> known = mesh.parent();
+        return known && *known == parent;
+    };
+    const auto set = [&](const MeshList& children) {
+        parent.edit([&](MeshData& data) { data.children = children; });
+    };
+    set({a, b, c});
+    EXPECT_TRUE(has_parent(a) && has_parent(b) && has_parent(c));
+    set({c, a});
+    EXPECT_TRUE(has_parent(a) && !has_parent(b) && has_parent(c));
+    set({c, b, c});
+    EXPECT_TRUE(!has_parent(a) && has_parent(b) && has_parent(c));
+    set({c, b});
+    EXPECT_TRUE(!has_parent(a) && has_parent(b) && has_parent(c));
+    set({});
+    EXPECT_FALSE(has_parent(a) || has_parent(b) || has_parent(c));
+}
+
 TEST(MeshPose, RefusesWhatIsNoMotion) {
     Mesh mesh = point("m");
     const double nan = std::numeric_limits<double>::quiet_NaN();

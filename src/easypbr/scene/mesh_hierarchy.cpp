@@ -43,13 +43,18 @@ bool Mesh::exchange(const std::shared_ptr<const MeshData>& expected, std::shared
 }
 
 bool Mesh::replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next) {
-    if (next->children == expected->children) return exchange(expected, std::move(next));
+    // Those between what both lists begin and end with.
+    const auto [gone, come] = std::ranges::mismatch(expected->children, next->children);
+    auto gone_end = expected->children.end();
+    auto come_end = next->children.end();
+    while (gone_end != gone && come_end != come && gone_end[-1] == come_end[-1]) --gone_end, --come_end;
+    if (gone == gone_end && come == come_end) return exchange(expected, std::move(next));
+    const std::vector<Mesh> removed(gone, gone_end), added(come, come_end);
     const std::lock_guard lock(hierarchies());
-    if (is_below(next->children)) fail_as_circle("a child", next->name);
-    const std::vector<Mesh> children = next->children;
+    if (is_below(added)) fail_as_circle("a child", next->name);
     if (!exchange(expected, std::move(next))) return false;
-    disown(expected->children);
-    adopt(children);
+    disown(removed);
+    adopt(added);
     return true;
 }
 
@@ -62,9 +67,12 @@ void Mesh::adopt(const std::vector<Mesh>& children) const {
 }
 
 void Mesh::disown(const std::vector<Mesh>& children) const {
-    for (const Mesh& child : children)
-        std::erase_if(child.shared_->parents,
-                      [&](const std::weak_ptr<Shared>& parent) { return parent.lock() == shared_; });
+    for (const Mesh& child : children) {
+        auto& parents = child.shared_->parents;
+        const auto own = std::ranges::find_if(
+            parents, [&](const std::weak_ptr<Shared>& parent) { return parent.lock() == shared_; });
+        if (own != parents.end()) parents.erase(own);
+    }
 }
 
 bool Mesh::is_below(const std::vector<Mesh>& children, int depth) const {
