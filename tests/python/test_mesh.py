@@ -1,3 +1,4 @@
+import copy
 import gc
 
 import numpy as np
@@ -5,6 +6,8 @@ import pytest
 
 import easypbr
 from easypbr import Material, Mesh, auto
+
+LIGHT = easypbr.Light("point", intensity=3)
 
 
 @pytest.mark.parametrize("dtype", ["float16", "float32", "float64", "int8", "int32", "int64", "uint8", ">f8", ">i4"])
@@ -21,6 +24,20 @@ def test_indices_of_any_numeric_type_become_int32(square, dtype):
     mesh = Mesh(V, F.astype(dtype))
     assert mesh.F.dtype == np.int32
     np.testing.assert_array_equal(mesh.F, F)
+
+
+@pytest.mark.parametrize("records", [
+    [("x", "u1"), ("a", "f4")],
+    [("a", "f8"), ("x", "f4")],
+    [("x", "u1"), ("a", "i2"), ("y", "u1", 2)],
+])
+def test_fields_of_packed_records(square, records):
+    values = np.zeros(4, records)
+    values["a"] = [1, 2, 3, 4]
+    mesh = Mesh(*square)
+    mesh.I = values["a"]
+    mesh.add_scalar("a", values["a"])
+    assert mesh.I.tolist() == mesh.scalars["a"].tolist() == [1, 2, 3, 4]
 
 
 def test_strided_and_column_major_arrays_and_lists(square):
@@ -192,6 +209,22 @@ def test_handles_share_and_clones_do_not(square):
     assert copy != mesh
     mesh.name = "renamed"
     assert shown.name == "renamed" and copy.name == ""
+
+
+@pytest.mark.parametrize("duplicate", [copy.copy, copy.deepcopy])
+def test_copies_are_independent(square, duplicate):
+    mesh = Mesh(*square)
+    mesh.add_child(Mesh(*square))
+    mesh.material.roughness = 0.25
+    other, material = duplicate(mesh), duplicate(mesh.material)
+    assert len(other.children) == 1 and other.children[0] != mesh.children[0]
+    other.V = 2 * mesh.V
+    material.roughness = other.material.roughness = 1
+    np.testing.assert_array_equal(mesh.V, square[0])
+    assert mesh.material.roughness == 0.25
+    style, light, camera = duplicate(mesh.style), duplicate(LIGHT), duplicate(easypbr.Camera())
+    style.line_width, light.intensity, camera.fov_y_deg = 7, 9, 11
+    assert mesh.style.line_width != 7 and LIGHT.intensity == 3
 
 
 def test_material_attributes_go_through(square):

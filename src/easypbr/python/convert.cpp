@@ -217,6 +217,8 @@ nb::object numeric_object(nb::handle object, const char* what) {
         array = array.attr("astype")("float64");
     else if (!nb::cast<bool>(dtype.attr("isnative")))
         array = array.attr("astype")(dtype.attr("newbyteorder")("="));
+    // Fields of packed records do not lie at multiples of their size.
+    if (!nb::cast<bool>(array.attr("flags").attr("aligned"))) array = array.attr("copy")();
     return array;
 }
 
