@@ -94,6 +94,15 @@ def test_points_at_one_place_are_a_dot(count):
     assert 1 <= drawn_share(mesh_of(V=[[1, 2, 3]] * count)) * 200 * 150 <= 16
 
 
+def test_numbers_beyond_single_precision_are_named():
+    large = shapes.box()
+    large.T_parent_mesh = np.diag([1e200, 1e200, 1e200, 1])
+    with pytest.raises(easypbr.ArgumentError, match=r"mesh 'mesh': its pose in the world has numbers up to 1e\+200"):
+        drawn_share(large)
+    with pytest.raises(easypbr.ArgumentError, match=r"less than 1e\+150 apart, got \(0, 0, 1e\+300\)"):
+        easypbr.Camera.look_at((0, 0, 1e300), (0, 0, 0))
+
+
 @pytest.mark.parametrize("factor", [1e-12, 1e12])
 def test_clouds_of_any_size_are_drawn(factor):
     assert drawn_share(mesh_of(V=V * factor)) > 0.2

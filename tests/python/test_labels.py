@@ -27,6 +27,7 @@ def test_labels_belong_to_vertices_or_faces():
     (np.zeros((4, 20), np.float32), r"mesh array L: expected n labels, got 4 x 20; scores of classes.*argmax\(-1\)"),
     (np.zeros((1, 4, 20)), "got 1 x 4 x 20; .*argmax"),
     (np.array([0.1, 0.7, 0.2, 0.0]), "mesh array L: expected whole numbers .*got others in 4 float64; .*argmax"),
+    (np.array([0, 2, np.nan, 1]), "got others in 4 float64; NaN is no label: give -1"),
     ([1, 2, 3], "mesh array L: expected 4 rows, one per vertex, or 2, one per face, or none; got 3 x 1"),
     (["road"] * 4, "mesh array L: expected numbers, got dtype <U4"),
     (np.full(4, 2**31, np.uint32), "mesh array L: expected whole numbers from -2147483648 to 2147483647"),

@@ -81,6 +81,7 @@ void bind_camera(nb::module_& module) {
     nb::class_<Camera> camera(module, "Camera", "A pinhole or orthographic camera with a pose.");
     camera.def(nb::init<>());
     bind_camera_makers(camera);
+    bind_copies(camera, [](const Camera& c) { return c; });
     camera
         .def_prop_rw(
             "T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.T_world_cam.matrix()); }, set_pose,

@@ -91,6 +91,7 @@ void bind_light(nb::module_& module) {
     light.def("__init__", construct_light, nb::arg("type") = "point", nb::arg("values"),
               nb::sig("def __init__(self, type: str = 'point', **values: object) -> None"));
     for (const LightField& field : light_fields()) light_property(light, field);
+    bind_copies(light, [](const Light& l) { return l; });
 }
 
 }  // namespace easypbr::python

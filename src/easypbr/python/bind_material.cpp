@@ -144,6 +144,7 @@ void bind_style(nb::module_& module) {
     style.def("__init__", construct_material<StyleHandle>,
               nb::sig("def __init__(self, **values: object) -> None"));
     style.def("__repr__", style_text);
+    bind_copies(style, [](const StyleHandle& s) { return StyleHandle{{}, s.get()}; });
     const std::string prefix = "style.";
     for (const Field& field : fields()) {
         if (!field.name.starts_with(prefix)) continue;
@@ -171,6 +172,7 @@ void bind_material(nb::module_& module) {
                            "as linear numbers, or as text ('#rrggbb', sRGB).");
     material.def("__init__", construct_material<MaterialHandle>,
                  nb::sig("def __init__(self, **values: object) -> None"));
+    bind_copies(material, [](const MaterialHandle& m) { return MaterialHandle{{}, 0, m.get()}; });
     material.def_prop_rw(
         "name", [](const MaterialHandle& m) { return m.get().name; },
         [](MaterialHandle& m, const std::string& name) {

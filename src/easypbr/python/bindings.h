@@ -53,4 +53,12 @@ auto released(Work&& work) {
     }
 }
 
+/// Has copy.copy() and copy.deepcopy() give what `copy` makes of an object.
+template <class T, class Copy>
+void bind_copies(nb::class_<T>& type, Copy copy) {
+    type.def("__copy__", copy);
+    type.def(
+        "__deepcopy__", [copy](const T& object, const nb::object&) { return copy(object); }, nb::arg("memo"));
+}
+
 }  // namespace easypbr::python

@@ -20,6 +20,15 @@ class ScalarsLike : public nb::object {
 
 const char* const advice =
     "scores of classes, such as a network's logits, become labels by their argmax: scores.argmax(-1)";
+const char* const missing_advice =
+    "NaN is no label: give -1 where there is none, such as numpy.nan_to_num(labels, nan=-1)";
+
+/// Whether any number is NaN, as tables have it where a label is missing.
+bool has_missing(nb::handle labels) {
+    const nb::object numbers = numeric_object(labels, "mesh array L");
+    const nb::object any = nb::module_::import_("numpy").attr("isnan")(numbers).attr("any")();
+    return nb::cast<bool>(any.attr("item")());
+}
 
 /// Told from the shape alone, so that no tensor needs to be converted first.
 void refuse_scores(nb::handle object) {
@@ -69,7 +78,8 @@ MeshChange prepare_labels(nb::handle object) {
         try {
             labels = to_array<int32_t, 1>(numbers, {"L", 1, 1});
         } catch (const ArgumentError& error) {
-            throw ArgumentError(fmt::format("{}; {}", error.what(), advice));
+            throw ArgumentError(
+                fmt::format("{}; {}", error.what(), has_missing(numbers) ? missing_advice : advice));
         }
     }
     return [labels](MeshData& data) { data.L = labels; };

@@ -92,6 +92,7 @@ void bind_hierarchy(nb::class_<Mesh>& mesh) {
         .def(
             "clone", [](const Mesh& m) { return released([&] { return m.clone(); }); },
             "A deep copy, children included.");
+    bind_copies(mesh, [](const Mesh& m) { return released([&] { return m.clone(); }); });
 }
 
 }  // namespace

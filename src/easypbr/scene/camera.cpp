@@ -83,9 +83,15 @@ Mat4d Camera::projection_matrix(double aspect) const {
 Camera Camera::look_at(const Vec3d& position, const Vec3d& target, const Vec3d& up) {
     const Vec3d forward = (target - position).normalized();
     // Eigen leaves a zero vector as it is.
-    if (!(forward.squaredNorm() > 0.5))
+    if (!(forward.squaredNorm() > 0.5)) {
+        constexpr double largest = 1e150;  // Squares of lengths are finite.
+        if (!((target - position).array().abs() < largest).all())
+            throw ArgumentError(fmt::format(
+                "camera: expected position and target less than {} apart, got ({}, {}, {}) and ({}, {}, {})",
+                largest, position.x(), position.y(), position.z(), target.x(), target.y(), target.z()));
         throw ArgumentError(fmt::format("camera: position and target coincide at ({}, {}, {})", position.x(),
                                         position.y(), position.z()));
+    }
     Vec3d right = forward.cross(up.normalized());
     if (right.norm() < 1e-6) right = forward.cross(substitute_up(up, forward));
     right.normalize();

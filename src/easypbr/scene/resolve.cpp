@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/image.h"
@@ -113,6 +114,17 @@ std::pair<std::string, double> farthest_object(const SceneSnapshot& scene) {
     return farthest;
 }
 
+/// Says which mesh's pose nothing can be inferred from, for its numbers leave the picture's precision.
+void require_poses(const SceneSnapshot& scene) {
+    for (const SceneSnapshot::Object& object : scene.objects) {
+        const double largest = object.T_world_mesh.matrix().cwiseAbs().maxCoeff();
+        if (largest <= double(std::numeric_limits<float>::max())) continue;
+        throw ArgumentError(fmt::format(
+            "mesh '{}': its pose in the world has numbers up to {:.3g}, too large for single precision",
+            object.name, largest));
+    }
+}
+
 /// Says so at once where a mesh is too large, before anything that follows from it is kept.
 void require_representable(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
     if (is_representable(resolved)) return;
@@ -141,6 +153,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
         throw ArgumentError(fmt::format("picture size: expected width and height from 1 to {}, got {}x{}",
                                         max_image_side, size.x(), size.y()));
     for (const Field& field : fields()) checked(field, field.get(given));
+    require_poses(scene);
     const detail::Content content(scene);
     Settings settings = given;
     ResolvedSettings resolved;
