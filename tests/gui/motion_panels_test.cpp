@@ -439,6 +439,31 @@ TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     EXPECT_TRUE(same(off, session_.render({size, 6})));
 }
 
+// The animation moves the first of two children that share a name.
+TEST_F(MotionPanels, OnlyTheSiblingThatMovesIsBlurred) {
+    view_.state().panels.shown = false;
+    look_from({0, 1, 5});
+    Mesh ball = session_.scene().get("ball"), twin = ball.clone(), parent;
+    twin.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 1, 0)));
+    session_.scene().remove("ball");
+    parent.add_child(ball);
+    parent.add_child(twin);
+    session_.scene().show(parent, "pair");
+    AnimationNode node;
+    node.mesh = ball;
+    player_.add("pair", Animations({{node}, {}, {}, {slide("slide")}}));
+    session_.settings().motion_blur.enabled = true;
+    session_.settings().image.samples = 4;
+    view_.drawing().recording_form().fps = 2;
+    player_.play(0);
+    player_.pause();
+    player_.seek(2);
+    settle();
+    const Image shown = view_.drawing().picture().image();
+    EXPECT_TRUE(same(shown, still_after(
+                                session_, [&] { player_.seek(1.5); }, [&] { player_.seek(2); })));
+}
+
 TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     session_.scene().show(make_box(), "ball");
     three_keys();

@@ -21,6 +21,7 @@ struct SceneSnapshot {
         /// The name under which its hierarchy is shown. `name` does not tell: a child "b" of "car" and what
         /// is shown as "car/b" are both "car/b".
         std::string root = {};
+        const void* node = nullptr;  ///< Mesh::identity()
     };
     /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is
     /// hidden, or invisible by its style, is left out with its descendants.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "easypbr/app/live_drawing.h"
@@ -13,22 +14,25 @@ namespace {
 
 using Moved = std::vector<std::pair<Mesh, Eigen::Affine3d>>;
 
-/// Where a node was, "car/wheel" and T_world_mesh, before it and what it hangs from moved.
-Eigen::Affine3d pose_before(const Scene& scene, const std::string& name, const Eigen::Affine3d& T_world_mesh,
-                            const Moved& moved) {
-    Eigen::Affine3d now = Eigen::Affine3d::Identity(), before = now;
-    for (size_t at = 0; at != name.npos;) {
-        at = name.find('/', at + 1);
-        const std::optional<Mesh> node = node_named(scene, name.substr(0, at));
-        if (!node) continue;
-        const Eigen::Affine3d own = node->T_parent_mesh();
-        const auto motion = std::ranges::find(moved, *node, &Moved::value_type::first);
-        now = now * own;
-        before = before * own * (motion == moved.end() ? Eigen::Affine3d::Identity() : motion->second);
+/// How the objects moved in the world, with what they hang from: now at T_world_mesh, they were at
+/// change * T_world_mesh.
+std::vector<Eigen::Affine3d> changes_of(const SceneSnapshot& scene, const Moved& moved) {
+    std::map<const void*, Eigen::Affine3d> inherited;  // by children
+    std::vector<Eigen::Affine3d> changes;
+    for (const SceneSnapshot::Object& object : scene.objects) {
+        const auto parent = inherited.find(object.node);
+        Eigen::Affine3d change = parent == inherited.end() ? Eigen::Affine3d::Identity() : parent->second;
+        const auto own = std::ranges::find(moved, object.node,
+                                           [](const Moved::value_type& m) { return m.first.identity(); });
+        if (own != moved.end()) {
+            // By what it moved in the world, so that the scene's origin does not matter.
+            const Eigen::Affine3d now = own->first.T_world_mesh();
+            change = change * (now * own->second) * now.inverse(Eigen::Affine);
+        }
+        for (const Mesh& child : object.mesh->children) inherited[child.identity()] = change;
+        changes.push_back(change);
     }
-    if (before.matrix() == now.matrix()) return T_world_mesh;
-    // By what it moved in the world, so that the scene's origin does not matter.
-    return before * now.inverse(Eigen::Affine) * T_world_mesh;
+    return changes;
 }
 
 }  // namespace
@@ -78,9 +82,12 @@ void LiveDrawing::move_along_path(double seconds) {
 Session::RefinedMotion LiveDrawing::shown_motion(const Camera& now) const {
     if (!(form_.fps > 0)) return nullptr;
     const double frame_s = 1 / form_.fps;
-    Motion motion(session_.scene().snapshot(), now);
-    const auto moved = player_.motion(frame_s);
-    for (auto& [key, pose] : motion.poses) pose = pose_before(session_.scene(), key.name, pose, moved);
+    const SceneSnapshot scene = session_.scene().snapshot();
+    Motion motion(scene, now);
+    const std::vector<ObjectKey> keys = object_keys(scene);
+    const std::vector<Eigen::Affine3d> changes = changes_of(scene, player_.motion(frame_s));
+    for (size_t i = 0; i < keys.size(); ++i)
+        motion.poses[keys[i]] = changes[i] * scene.objects[i].T_world_mesh;
     const auto& path = path_.editor.path();
     if (const auto before = recording_.camera_before())
         motion.camera = *before;

@@ -49,7 +49,7 @@ void add_nodes(const Mesh& mesh, const std::string& name, const std::string& roo
     const auto data = mesh.snapshot();
     if (!data->style.visible.value_or(true)) return;
     const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
-    objects.push_back({name, data, T_world_mesh, root});
+    objects.push_back({name, data, T_world_mesh, root, mesh.identity()});
     for (const Mesh& child : data->children)
         if (!shown.count(child.identity()))
             add_nodes(child, name + "/" + child.name(), root, T_world_mesh, depth + 1, shown, objects);
