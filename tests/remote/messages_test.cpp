@@ -74,6 +74,11 @@ TEST(Messages, LongTextsAreRefused) {
     EXPECT_EQ(read<SetField>(set(8192)).value.size(), 8192u);
     EXPECT_THROW(parse_message(set(8193)), ProtocolError);
     EXPECT_THROW(parse_message(std::string(60000, '[')), ProtocolError);
+    // The program names objects and panels.
+    const std::string name(6000, 'a');
+    EXPECT_EQ(read<ShowObject>(R"({"kind":"show","visible":true,"object":")" + name + "\"}").object, name);
+    const std::string widget = R"({"kind":"widget","name":"Go","use":0,"value":"","panel":")" + name + "\"}";
+    EXPECT_EQ(read<SetWidget>(widget).panel, name);
 }
 
 /// Messages that were right, changed at random: read or refused, nothing else.

@@ -1,7 +1,7 @@
 // A view's connection: begins with the secret, comes back by itself. What carries the messages is a Wire.
 import type { Link } from "./link";
 import { Painter } from "./painter";
-import type { ClientMessage, ServerMessage } from "./protocol";
+import { refusalOf, type ClientMessage, type ServerMessage } from "./protocol";
 import { Store } from "./store";
 import { decodesVideo } from "./video";
 import type { Wire } from "./wire";
@@ -96,8 +96,12 @@ export class Connection {
   /** What changes the view is preceded by taking control where this may be taken at once. */
   send(message: ClientMessage): void {
     if (!this.wire.isOpen) return;
+    const refusal = refusalOf(message);
+    if (refusal) return this.store.notify(`Too long for the server: ${refusal}`, true);
     if (this.rules.takesControl && !this.holds && !SILENT.has(message.kind)) {
       this.wire.send(JSON.stringify({ kind: "act", what: "take" }));
+      // Places of what follows are those of this page's picture.
+      if (message.kind !== "resize") this.wire.send(JSON.stringify({ kind: "resize", ...this.size }));
       this.holds = true;
     }
     this.wire.send(JSON.stringify(message));
@@ -112,8 +116,9 @@ export class Connection {
   }
 
   set(name: string, value: string): void {
-    this.touched[name] = value;
-    this.send({ kind: "set", name, value });
+    const message = { kind: "set", name, value };
+    if (!refusalOf(message)) this.touched[name] = value;
+    this.send(message);
   }
 
   resize(width: number, height: number): void {
@@ -126,6 +131,7 @@ export class Connection {
 
   /** A view of the page's own, or the shared one. */
   lookAt(own: boolean): void {
+    this.restore = null;
     this.send({ kind: "view", own, ...this.size });
   }
 
@@ -225,11 +231,13 @@ export class Connection {
     const returns = isAgain && this.own;
     this.own = false;
     if (returns) this.send({ kind: "view", own: true, ...this.size });
-    this.restore = isNew || returns ? { camera: isAgain ? this.store.state.camera : this.link.camera, settings: { ...this.touched }, own: returns } : null;
+    const camera = isAgain ? this.store.state.camera : this.link.camera;
+    this.restore = isNew || returns ? { camera, settings: { ...this.touched }, own: returns, isOld: isAgain } : null;
     this.pause();
   }
 
-  private restore: { camera: string; settings: Record<string, string>; own: boolean } | null = null;
+  /** `own`: of a view of its own; `isOld`: of before the server began anew, else of the link. */
+  private restore: { camera: string; settings: Record<string, string>; own: boolean; isOld: boolean } | null = null;
 
   private control(control: ServerMessage & { kind: "control" }): void {
     const gained = control.controls && !this.controlled;
@@ -238,7 +246,11 @@ export class Connection {
     if (isOther) this.store.update({ pick: null, tools: {}, panels: [] });
     this.own = control.view !== 0;
     this.store.update({ control: { ...control, controls: control.controls || this.rules.takesControl } });
-    if (!control.controls) return;
+    if (!control.controls) {
+      // Who does may have moved on when the page gets control: what was seen before the server began anew is old then.
+      if (control.taken && this.restore?.isOld && !this.restore.own) this.restore = null;
+      return;
+    }
     if (gained || isOther || this.restore) this.send({ kind: "resize", ...this.size });
     const restore = this.restore;
     if (!restore || (restore.own && !this.own)) return;

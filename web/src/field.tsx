@@ -1,6 +1,7 @@
 // One control for each type of setting; values are texts as on the command line.
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { Field } from "./protocol";
+import { Pace } from "./pace";
+import { MOST_TEXT, type Field } from "./protocol";
 
 interface Props {
   field: Field;
@@ -11,25 +12,42 @@ interface Props {
   set: (text: string) => void;
 }
 
+interface Draft {
+  text: string;
+  set: (text: string) => void;
+  begin: () => void;
+  end: () => void;
+  /** Since it began, by the user. */
+  isChanged: () => boolean;
+}
+
 /** A value that is being typed or dragged stays as it is, whatever the server says meanwhile. */
-function useDraft(value: string): [string, (text: string) => void, (editing: boolean) => void] {
-  const [draft, setDraft] = useState(value);
-  const editing = useRef(false);
+function useDraft(value: string): Draft {
+  const [text, set] = useState(value);
+  const first = useRef<string | null>(null);
   useEffect(() => {
-    if (!editing.current) setDraft(value);
+    if (first.current === null) set(value);
   }, [value]);
-  const edit = (is: boolean) => {
-    editing.current = is;
-    if (!is) setDraft(value);
+  const begin = () => {
+    first.current = text;
   };
-  return [draft, setDraft, edit];
+  const end = () => {
+    first.current = null;
+    set(value);
+  };
+  return { text, set, begin, end, isChanged: () => first.current !== null && text !== first.current };
+}
+
+function usePace(): Pace {
+  const [pace] = useState(() => new Pace());
+  return pace;
 }
 
 function TextControl({ field, id, label, value, disabled, set }: Props) {
-  const [draft, setDraft, edit] = useDraft(value);
+  const draft = useDraft(value);
   const commit = () => {
-    if (draft !== value) set(draft);
-    edit(false);
+    if (draft.isChanged()) set(draft.text);
+    draft.end();
   };
   return (
     <input
@@ -38,12 +56,13 @@ function TextControl({ field, id, label, value, disabled, set }: Props) {
       type="text"
       inputMode={field.type === "number" || field.type === "integer" ? "decimal" : "text"}
       class={field.type === "vector" ? "wide" : ""}
-      value={draft}
+      value={draft.text}
+      maxLength={MOST_TEXT}
       disabled={disabled}
       spellcheck={false}
       autocomplete="off"
-      onFocus={() => edit(true)}
-      onInput={(event) => setDraft(event.currentTarget.value)}
+      onFocus={draft.begin}
+      onInput={(event) => draft.set(event.currentTarget.value)}
       onBlur={commit}
       onKeyDown={(event) => {
         if (event.key === "Enter") event.currentTarget.blur();
@@ -58,24 +77,33 @@ function hasSlider(field: Field): boolean {
   return field.slider || field.max - field.min <= (field.type === "integer" || field.whole ? 64 : 720);
 }
 
-/** What has no end stays a word. */
-function short(value: number | string): string {
-  const number = Number(value);
-  return Number.isFinite(number) ? String(Number(number.toPrecision(5))) : String(value);
+/** A text of a number to be read: whole ones with all digits, others with 7 and at least 3 behind the point. What has no
+ * end stays a word. */
+function shown(text: string): string {
+  const number = Number(text);
+  if (text === "" || !Number.isFinite(number)) return text;
+  if (Number.isInteger(number)) return String(number);
+  const before = Math.floor(Math.log10(Math.abs(number))) + 1;
+  return String(Number(number.toPrecision(Math.min(17, Math.max(7, before + 3)))));
+}
+
+/** The number of a slider's place, without digits below its step. */
+function placed(text: string, step: number): string {
+  const decimals = Math.min(20, Math.max(0, 1 - Math.floor(Math.log10(step))));
+  return String(Number(Number(text).toFixed(decimals)));
 }
 
 function NumberControl(props: Props) {
   const { field, id, value, disabled, set } = props;
-  const [draft, setDraft, edit] = useDraft(value);
-  const pending = useRef(0);
-  if (!hasSlider(field)) return <TextControl {...props} value={value === "" ? "" : short(value)} />;
+  const draft = useDraft(value);
+  const pace = usePace();
+  if (!hasSlider(field)) return <TextControl {...props} value={shown(value)} />;
   const low = field.min as number;
   const high = field.max as number;
-  const whole = field.type === "integer" || field.whole;
+  const step = field.type === "integer" || field.whole ? 1 : (high - low) / 1000;
   const change = (text: string) => {
-    setDraft(text);
-    cancelAnimationFrame(pending.current);
-    pending.current = requestAnimationFrame(() => set(text));
+    draft.set(text);
+    pace.later(() => set(text));
   };
   return (
     <>
@@ -84,14 +112,17 @@ function NumberControl(props: Props) {
         type="range"
         min={low}
         max={high}
-        step={whole ? 1 : (high - low) / 1000}
-        value={draft === "" ? low : draft}
+        step={step}
+        value={draft.text === "" ? low : draft.text}
         disabled={disabled}
-        onPointerDown={() => edit(true)}
-        onInput={(event) => change(short(Number(event.currentTarget.value)))}
-        onChange={() => edit(false)}
+        onPointerDown={draft.begin}
+        onInput={(event) => change(placed(event.currentTarget.value, step))}
+        onChange={draft.end}
+        onPointerUp={draft.end}
+        onPointerCancel={draft.end}
+        onBlur={draft.end}
       />
-      <TextControl {...props} id={`${id}-number`} value={draft === "" ? "" : short(draft)} />
+      <TextControl {...props} id={`${id}-number`} value={shown(draft.text)} />
     </>
   );
 }
@@ -106,12 +137,9 @@ function hexOf(value: string): string {
 }
 
 function ColorControl({ id, value, disabled, set }: Props) {
-  const pending = useRef(0);
-  const later = (text: string) => {
-    cancelAnimationFrame(pending.current);
-    pending.current = requestAnimationFrame(() => set(text));
-  };
-  return <input id={id} type="color" value={hexOf(value)} disabled={disabled} onInput={(event) => later(event.currentTarget.value)} />;
+  const pace = usePace();
+  const change = (text: string) => pace.later(() => set(text));
+  return <input id={id} type="color" value={hexOf(value)} disabled={disabled} onInput={(event) => change(event.currentTarget.value)} />;
 }
 
 function ChoiceControl({ field, id, value, disabled, set }: Props) {

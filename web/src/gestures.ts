@@ -1,6 +1,7 @@
-// Mouse, touch, pen and keys on the canvas become messages: at most one for a moving pointer in each frame of the
-// display; presses, releases and keys are never merged.
+// Mouse, touch, pen and keys on the canvas become messages: at most one for a moving pointer and one for the wheel in a
+// frame of the display; presses, releases and keys are never merged.
 import type { Connection } from "./connection";
+import { Pace } from "./pace";
 
 type Button = "left" | "right" | "middle";
 
@@ -36,8 +37,9 @@ export class Gestures {
   private lastTap = { at: { x: 0, y: 0 }, time: -1e9 };
   private pinch = { distance: 0, wheel: 0 };
   private time = 0;
-  private keys = new Set<string>();
-  private frame = 0;
+  /** That are down: what a key stands for may be another letter when it comes up, with Alt say. */
+  private keys = new Map<string, string>();
+  private pace = new Pace();
 
   constructor(
     private canvas: HTMLCanvasElement,
@@ -74,18 +76,21 @@ export class Gestures {
 
   /** Sends what is waiting, so that the order stays. */
   private flush(): void {
-    cancelAnimationFrame(this.frame);
-    this.frame = 0;
-    const pending = this.pending;
+    this.pace.flush();
+  }
+
+  /** A wheel's message says where the pointer is. */
+  private sendPending(): void {
+    const { pending } = this;
     this.pending = null;
     if (!pending) return;
-    this.pointer("move", "left", pending.at, 0, pending.shift);
+    if (this.pressed) this.pointer("move", "left", pending.at, 0, pending.shift);
     if (pending.wheel !== 0) this.pointer("wheel", "left", pending.at, pending.wheel, pending.shift);
   }
 
   private later(at: Point, wheel: number, shift: boolean): void {
     this.pending = { at, wheel: (this.pending?.wheel ?? 0) + wheel, shift };
-    if (!this.frame) this.frame = requestAnimationFrame(() => this.flush());
+    this.pace.later(() => this.sendPending());
   }
 
   private down(event: PointerEvent): void {
@@ -176,16 +181,25 @@ export class Gestures {
 
   private key(event: KeyboardEvent, down: boolean): void {
     if (down && (event.ctrlKey || event.metaKey)) return this.shortcut(event);
+    const place = event.code || event.key;
+    if (!down) return this.keyUp(event, place);
     if (event.altKey) return;
     const key = event.key.length === 1 ? event.key.toUpperCase() : "";
-    if (FLY.has(key) || key === "F") {
-      event.preventDefault();
-      if (down && this.keys.has(key)) return;
-      if (down) this.keys.add(key);
-      else this.keys.delete(key);
-      return this.connection.input({ kind: "key", action: down ? "down" : "up", key, shift: event.shiftKey });
-    }
-    if (down) this.turn(event);
+    if (!FLY.has(key) && key !== "F") return this.turn(event);
+    event.preventDefault();
+    if (this.keys.has(place)) return;
+    this.keys.set(place, key);
+    this.connection.input({ kind: "key", action: "down", key, shift: event.shiftKey });
+  }
+
+  private keyUp(event: KeyboardEvent, place: string): void {
+    // Browsers on macOS do not tell of keys that come up while it is down.
+    if (event.key === "Meta") return this.keys.size > 0 ? this.release() : undefined;
+    const key = this.keys.get(place);
+    if (!key) return;
+    event.preventDefault();
+    this.keys.delete(place);
+    this.connection.input({ kind: "key", action: "up", key, shift: event.shiftKey });
   }
 
   private shortcut(event: KeyboardEvent): void {

@@ -113,6 +113,19 @@ export type ServerMessage =
 
 export type ClientMessage = { kind: string } & Record<string, string | number | boolean>;
 
+/** Bytes of a text that the server takes at most; a longer one would end the connection. */
+export const MOST_TEXT = 8192;
+const MOST_NAME = 256;
+
+/** Why the server would not take a message; empty: it would. */
+export function refusalOf(message: ClientMessage): string {
+  for (const [name, value] of Object.entries(message)) {
+    const most = message.kind === "set" && name === "name" ? MOST_NAME : MOST_TEXT;
+    if (typeof value === "string" && new TextEncoder().encode(value).length > most) return `${name}: at most ${most} bytes`;
+  }
+  return "";
+}
+
 export const FRAME_MOVING = 1;
 export const FRAME_STILL = 2;
 export const FLAG_LAST = 1;

@@ -9,13 +9,15 @@ const MOST_RATIO = 2;
 
 let pickId = 0;
 
-/** Pixels of the picture for each of the page. */
-function ratio(): number {
-  return Math.min(MOST_RATIO, window.devicePixelRatio || 1);
+/** Pixels of the picture for each of the page: for both sides the same, also where the larger one is limited. */
+function ratioOf(element: HTMLElement): number {
+  const longest = Math.max(1, element.clientWidth, element.clientHeight);
+  return Math.min(MOST_RATIO, window.devicePixelRatio || 1, LARGEST_SIDE / longest);
 }
 
 function sizeOf(element: HTMLElement): [number, number] {
-  const side = (length: number) => Math.max(1, Math.min(LARGEST_SIDE, Math.round(length * ratio())));
+  const ratio = ratioOf(element);
+  const side = (length: number) => Math.max(1, Math.round(length * ratio));
   return [side(element.clientWidth), side(element.clientHeight)];
 }
 
@@ -30,7 +32,7 @@ export function Viewport({ connection, embedded = false }: { connection: Connect
     // Without a size it is not laid out yet, or no more.
     const measure = () => element.clientWidth > 0 && connection.resize(...sizeOf(element));
     const gestures = new Gestures(element, connection, {
-      scale: ratio,
+      scale: () => ratioOf(element),
       entered: measure,
       takesWheel: () => !embedded || (element.getRootNode() as ShadowRoot).activeElement === element,
       clicked: (at) => connection.isLive && connection.send({ kind: "pick", id: ++pickId, x: at.x, y: at.y }),

@@ -16,7 +16,8 @@ using nlohmann::json;
 using Kind = app::InputEvent::Kind;
 
 constexpr double most_pixels = 1e5, most_seconds = 1e12, most_busy_s = 3600;
-constexpr size_t name_length = 256, path_length = 4096, text_length = 8192;
+/// Bytes; names of objects and panels are the program's, and may be long.
+constexpr size_t name_length = 256, text_length = 8192;
 
 /// The members of a message, each asked for once.
 class Members {
@@ -180,12 +181,12 @@ ClientMessage set_of(Members& members) {
 }
 
 ClientMessage show_of(Members& members) {
-    const std::string object = members.text("object", path_length);
+    const std::string object = members.text("object", text_length);
     return ShowObject{object, members.flag("visible")};
 }
 
 ClientMessage select_of(Members& members) {
-    return Select{members.text("object", path_length)};
+    return Select{members.text("object", text_length)};
 }
 
 ClientMessage pick_of(Members& members) {
@@ -211,7 +212,7 @@ ClientMessage camera_of(Members& members) {
 
 SetWidget widget_in(Members& members) {
     SetWidget widget;
-    widget.panel = members.text("panel", name_length);
+    widget.panel = members.text("panel", text_length);
     widget.name = members.text("name", text_length);
     widget.use = members.count("use");
     widget.value = members.text("value", text_length);
