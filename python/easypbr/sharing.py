@@ -1,6 +1,7 @@
 """A viewer outside of its window: in browsers, as a file that is turned offline, in notebooks."""
 
 import os
+import weakref
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -20,7 +21,8 @@ class Sharing(WindowCallbacks):
     scene: Scene
 
     def _init_sharing(self) -> None:
-        self._widget: Any = None
+        # Of all cells. ipywidgets keeps it until it is closed; then it lets go of what it drew with.
+        self._widget: weakref.ref[Any] | None = None
 
     def serve(
         self,
@@ -100,15 +102,19 @@ class Sharing(WindowCallbacks):
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any] | None:
         """The widget, one for all cells, with the present image beside it; None: no notebook, or no support for widgets."""
-        from .widget import can_show
+        from .widget import can_show, cells, size_for, widget_class
 
         if not self.scene.names() or not can_show():
             return None
-        if self._widget is None or self._widget.comm is None:
-            self._widget = self.widget()
+        widget = None if self._widget is None else self._widget()
+        if widget is None or widget.comm is None:
+            view = cast(Any, self)  # A Viewer.
+            widget = widget_class()(view, size_for(view, None), holds=False)
+            self._widget = weakref.ref(widget)
         else:
-            self._widget.keep()
-        return self._widget._repr_mimebundle_()
+            widget.keep()
+        cells.shows(widget)
+        return widget._repr_mimebundle_()
 
     def _repr_png_(self) -> bytes | None:
         if not self.scene.names():

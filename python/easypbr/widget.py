@@ -8,6 +8,7 @@ import operator
 import sys
 import threading
 import weakref
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -75,8 +76,12 @@ def widget_class() -> type:
         _label = traitlets.Unicode().tag(sync=True)
         _picture = traitlets.Bytes().tag(sync=True)
 
-        def __init__(self, view: View, size: tuple[int, int]) -> None:
-            self._view = view
+        def __init__(self, view: View, size: tuple[int, int], holds: bool = True) -> None:
+            """`holds`: the widget keeps the view alive; else it ends with it."""
+            # ipywidgets keeps every widget that is not closed.
+            self._view: Callable[[], View | None] = (lambda: view) if holds else weakref.ref(view)
+            if not holds:
+                weakref.finalize(view, _close, weakref.ref(self)).atexit = False
             kind, picture = picture_of(view, size)
             self._still = kind, picture
             label = ", ".join(view.scene.names()) or "Empty scene"
@@ -96,7 +101,10 @@ def widget_class() -> type:
         def keep(self) -> None:
             """Takes the present picture of the view as the one that is saved with the notebook. Cells show it when they run
             again; where the widget's state is saved too, at once."""
-            self._still = picture_of(self._view, (self._width, self._height))
+            view = self._view()
+            if view is None:
+                return
+            self._still = picture_of(view, (self._width, self._height))
             self._picture = self._still[1]
 
         def add_animations(self, name: str, animations: "_easypbr.Animations") -> None:
@@ -118,6 +126,46 @@ def widget_class() -> type:
             }
 
     return ViewWidget
+
+
+def _close(reference: "weakref.ref[Any]") -> None:
+    widget = reference()
+    if widget is not None:
+        widget.close()
+
+
+class _Cells:
+    """What cells show, where the front end names them. A widget of a view whose cells all show something else is closed:
+    IPython keeps the view itself, as the cell's result."""
+
+    def __init__(self) -> None:
+        #: By cell: its last run that showed a view, and the widgets that this one shows.
+        self._shown: dict[str, tuple[str, weakref.WeakSet[Any]]] = {}
+
+    def shows(self, widget: Any) -> None:
+        """The cell that runs shows a widget."""
+        cell, run = _running_cell()
+        if not cell:
+            return
+        last_run, widgets = self._shown.get(cell, ("", weakref.WeakSet()))
+        if run == last_run:
+            widgets.add(widget)
+            return
+        self._shown[cell] = run, weakref.WeakSet([widget])
+        for old in list(widgets):
+            if not any(old in present for _, present in self._shown.values()):
+                old.close()
+
+
+cells = _Cells()
+
+
+def _running_cell() -> tuple[str, str]:
+    """The identifiers of a notebook's cell and of its run; empty where the front end does not tell them."""
+    ipython: Any = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    parent = shell.get_parent() if hasattr(shell, "get_parent") else {}
+    return str(parent.get("metadata", {}).get("cellId") or ""), str(parent.get("header", {}).get("msg_id") or "")
 
 
 class _Lines:

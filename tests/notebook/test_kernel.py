@@ -84,3 +84,25 @@ def test_what_is_no_message_harms_nothing():
     finally:
         client.stop_channels()
         manager.shutdown_kernel(now=True)
+
+
+COUNT = "import threading, time; time.sleep(1.5); print(sum(thread.name == 'easypbr widget' for thread in threading.enumerate()))"
+
+
+def test_a_widget_ends_with_its_view():
+    book = executed(SCENE, "from IPython.display import display\ndisplay(view)", COUNT, "view = None\nimport gc; gc.collect()", COUNT)
+    assert [book.cells[number].outputs[0].text.strip() for number in (2, 4)] == ["1", "0"]
+
+
+def test_a_widget_keeps_a_view_that_nobody_else_does():
+    book = executed(SCENE, "w = view.widget(); view = None\nimport gc; gc.collect()", "w.keep(); print(w.comm is not None)", COUNT)
+    assert [book.cells[number].outputs[0].text.strip() for number in (2, 3)] == ["True", "1"]
+
+
+def test_a_cell_that_shows_another_view_ends_what_it_showed():
+    cells = "import easypbr.widget\neasypbr.widget._running_cell = lambda: (cell, str(len(In)))\ncell = 'a'"
+    again = SCENE + "\nview"
+    both = "cell = 'b'\nother = easypbr.Viewer((320, 240), scene=scene)\ndisplay(view)\ndisplay(other)"
+    # What the last run of cell a showed is shown in cell b, too, with another one.
+    book = executed(cells, again, again, COUNT, both, COUNT, "cell = 'a'\n" + again, COUNT)
+    assert [book.cells[number].outputs[-1].text.strip() for number in (3, 5, 7)] == ["1", "2", "3"]

@@ -2,7 +2,8 @@
 
 import base64
 
-from conftest import SCENE
+from conftest import PATIENCE_MS, SCENE
+from playwright.sync_api import expect
 
 import easypbr
 
@@ -151,3 +152,52 @@ def test_a_reload_brings_it_back(open_lab):
     lab.page.reload()
     lab.page.wait_for_selector(".jp-Notebook .jp-Cell")
     lab.exact()
+
+
+def test_a_kernel_that_began_anew_is_told(open_lab):
+    lab = open_lab("anew.ipynb", SCENE, "view")
+    lab.run(0)
+    lab.run(1)
+    lab.exact()
+    lab.page.evaluate("() => { window.jupyterapp.commands.execute('kernelmenu:restart'); }")
+    lab.page.locator(".jp-Dialog button", has_text="Restart").click()
+    expect(lab.page.locator(".jp-OutputArea .silence")).to_contain_text("this picture stands still")
+    lab.drag(60, 10)
+    lab.run(0)
+    lab.run(1)
+    lab.exact()
+    expect(lab.page.locator(".jp-OutputArea .silence")).to_have_count(0)
+
+
+def test_a_cell_that_runs_again_ends_its_last_view(open_lab):
+    count = "import threading, time; time.sleep(1.5); print(sum(thread.name == 'easypbr widget' for thread in threading.enumerate()))"
+    lab = open_lab("again.ipynb", SCENE + "\nview", count)
+    for _ in range(2):
+        lab.run(0)
+        lab.page.wait_for_timeout(2000)
+    lab.exact()
+    lab.run(1)
+    assert lab.text_of(1) == "1"
+
+
+def test_pages_of_other_sizes_take_clicks_at_their_place(open_lab):
+    count = "print(view._widget()._channel.client_count())"
+    lab = open_lab("pages.ipynb", SCENE, "view", count)
+    lab.run(0)
+    lab.run(1)
+    lab.exact()
+    lab.save()
+    context = lab.page.context.browser.new_context(viewport={"width": 1000, "height": 900}, device_scale_factor=2)
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    page.goto(lab.page.url)
+    canvas = page.locator(".jp-OutputArea canvas.picture")
+    expect(canvas).to_have_attribute("data-exact", "true")
+    lab.canvas().click()  # In the middle.
+    expect(lab.page.locator(".jp-OutputArea .read-out strong")).to_have_text("bar")
+    canvas.click()
+    expect(page.locator(".jp-OutputArea .read-out strong")).to_have_text("bar")
+    context.close()
+    lab.page.wait_for_timeout(1500)
+    lab.run(2)
+    assert lab.text_of(2) == "1"
