@@ -114,7 +114,8 @@ class Sharing(WindowCallbacks):
         else:
             widget.keep()
         cells.shows(widget)
-        return widget._repr_mimebundle_()
+        bundle: dict[str, Any] = widget._repr_mimebundle_()
+        return bundle
 
     def _repr_png_(self) -> bytes | None:
         if not self.scene.names():

@@ -164,7 +164,7 @@ def _running_cell() -> tuple[str, str]:
     """The identifiers of a notebook's cell and of its run; empty where the front end does not tell them."""
     ipython: Any = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
-    parent = shell.get_parent() if hasattr(shell, "get_parent") else {}
+    parent: dict[str, Any] = getattr(shell, "get_parent", dict)()
     return str(parent.get("metadata", {}).get("cellId") or ""), str(parent.get("header", {}).get("msg_id") or "")
 
 
