@@ -408,6 +408,13 @@ bool same(const Image& a, const Image& b) {
     return std::ranges::equal(a.bytes(), b.bytes());
 }
 
+/// To one step of 8 bits: near planes that differ round depths differently.
+bool alike(const Image& a, const Image& b) {
+    return std::ranges::equal(a.bytes(), b.bytes(), [](std::byte x, std::byte y) {
+        return std::abs(std::to_integer<int>(x) - std::to_integer<int>(y)) <= 1;
+    });
+}
+
 // At rest the view shows what a recording's frame shows at this time: what happened since the frame before.
 TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     view_.state().panels.shown = false;
@@ -481,13 +488,12 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     const auto look = [&](double time) {
         return [this, time, &path] { session_.set_camera(path.camera(time, session_.camera())); };
     };
-    EXPECT_TRUE(same(shown, still_after(session_, look(0.45), look(0.7))));
+    EXPECT_TRUE(alike(shown, still_after(session_, look(0.45), look(0.7))));
+    EXPECT_FALSE(alike(shown, still_after(session_, look(0.7), look(0.7))));
     // Elsewhere it has not come along the path.
     look_from({1, 1, 5});
     settle();
-    const Image sharp = view_.drawing().picture().image();
-    const auto nothing = [] {};
-    EXPECT_TRUE(same(sharp, still_after(session_, nothing, nothing)));
+    EXPECT_TRUE(same(view_.drawing().picture().image(), still_after(session_, [] {}, [] {})));
 }
 
 }  // namespace
