@@ -36,7 +36,7 @@ class FolderWriter:
     base: Writer
     writers: list[Writer]
     #: Those that are written whatever the writers are.
-    paths = ("images", "records", "unfinished", "statistics.html", "contact_sheet.png")
+    paths: tuple[str, ...] = ("images", "records", "unfinished", "statistics.html", "contact_sheet.png")
 
     def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
         self.folder = folder

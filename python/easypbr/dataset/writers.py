@@ -84,7 +84,7 @@ class Coco(Writer):
     """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints: of visibility 2, of 1 behind
     what the picture shows, of 0 beyond it."""
 
-    paths = ("annotations.json",)
+    paths: tuple[str, ...] = ("annotations.json",)
 
     def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         images: list[dict[str, Any]] = []
@@ -120,7 +120,7 @@ class Coco(Writer):
 class Yolo(Writer):
     """labels/*.txt: class, centre and size of the box as parts of the picture; data.yaml."""
 
-    paths = ("labels", "data.yaml")
+    paths: tuple[str, ...] = ("labels", "data.yaml")
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         height, width = frame.depth.shape
@@ -161,7 +161,7 @@ class Kitti(Writer):
     """image_2/*.png, label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m). Boxes turn about the
     camera's y axis alone: cameras are level, annotated objects upright."""
 
-    paths = ("kitti",)
+    paths: tuple[str, ...] = ("kitti",)
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
@@ -219,7 +219,7 @@ class Flow(Writer):
     """Optical flow as KITTI has it: image_2/*_10.png and *_11.png, flow_occ (all points) and flow_noc (those that the second
     picture shows too): uint16, 64 x pixels + 32768, the third channel 1 where there is a value."""
 
-    paths = ("kitti_flow",)
+    paths: tuple[str, ...] = ("kitti_flow",)
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
@@ -246,7 +246,7 @@ def encode_flow(flow: NDArray[Any], valid: NDArray[Any]) -> NDArray[Any]:
 class Bop(Writer):
     """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info, models_info."""
 
-    paths = ("bop",)
+    paths: tuple[str, ...] = ("bop",)
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name, base = f"{frame.index:06d}", "bop/000000"
@@ -320,7 +320,7 @@ def _has_skew(spec: DatasetTables) -> bool:
 class Nerfstudio(Writer):
     """transforms.json: poses with OpenGL's axes, the lens's coefficients."""
 
-    paths = ("transforms.json",)
+    paths: tuple[str, ...] = ("transforms.json",)
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
@@ -348,7 +348,7 @@ class Nerfstudio(Writer):
 class Colmap(Writer):
     """sparse/0/cameras.txt, images.txt and an empty points3D.txt."""
 
-    paths = ("sparse",)
+    paths: tuple[str, ...] = ("sparse",)
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
@@ -392,7 +392,7 @@ def quaternion(R: NDArray[Any]) -> NDArray[Any]:
 class WebDataset(Writer):
     """shards/*.tar of up to 1000 samples: the picture and its annotation."""
 
-    paths = ("shards",)
+    paths: tuple[str, ...] = ("shards",)
     per_shard = 1000
 
     def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
@@ -414,7 +414,7 @@ class WebDataset(Writer):
 class Raw(Writer):
     """raw/*.npz: depth, normals, instance ids, K, T_world_cam; with motion, flow and occlusion."""
 
-    paths = ("raw",)
+    paths: tuple[str, ...] = ("raw",)
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         buffer = io.BytesIO()
@@ -427,7 +427,7 @@ class Raw(Writer):
 class Exr(Writer):
     """exr/depth, exr/normal, exr/id: float32, without loss."""
 
-    paths = ("exr",)
+    paths: tuple[str, ...] = ("exr",)
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}.exr"
@@ -438,7 +438,7 @@ class Exr(Writer):
 class Png(Writer):
     """depth/*.png (uint16, millimetres), normals/*.png and ids/*.png (uint16): what a fast loader reads."""
 
-    paths = ("depth", "normals", "ids")
+    paths: tuple[str, ...] = ("depth", "normals", "ids")
 
     @classmethod
     def check(cls, spec: DatasetTables) -> None:
