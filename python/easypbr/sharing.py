@@ -102,7 +102,7 @@ class Sharing(WindowCallbacks):
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any] | None:
         """The widget, one for all cells, with the present image beside it; None: no notebook, or no support for widgets."""
-        from .widget import can_show, cells, size_for, widget_class
+        from .widget import can_show, note_shown, size_for, widget_class
 
         if not self.scene.names() or not can_show():
             return None
@@ -113,7 +113,7 @@ class Sharing(WindowCallbacks):
             self._widget = weakref.ref(widget)
         else:
             widget.keep()
-        cells.shows(widget)
+        note_shown(widget)
         bundle: dict[str, Any] = widget._repr_mimebundle_()
         return bundle
 

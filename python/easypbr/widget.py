@@ -157,7 +157,12 @@ class _Cells:
                 old.close()
 
 
-cells = _Cells()
+_cells = _Cells()
+
+
+def note_shown(widget: Any) -> None:
+    """The cell that runs shows a widget."""
+    _cells.shows(widget)
 
 
 def _running_cell() -> tuple[str, str]:
