@@ -179,7 +179,7 @@ def test_dropping_everything_while_a_panel_runs_hangs_nowhere(view):
         del server
 
 
-@pytest.mark.parametrize("members", [{"value": 3}, {"use": -1}, {"panel": "x" * 300}, {"more": 1}])
+@pytest.mark.parametrize("members", [{"value": 3}, {"use": -1}, {"panel": "x" * 8200}, {"more": 1}])
 def test_wrong_messages_end_the_connection(connect, members):
     client = connect()
     client.until_told("welcome")

@@ -246,7 +246,7 @@ def test_who_watches_changes_nothing(view, server, connect):
     assert view.scene.light_names() == []
 
 
-@pytest.mark.parametrize("members", [{"value": 3}, {"use": -1}, {"panel": "x" * 300}, {"more": 1}])
+@pytest.mark.parametrize("members", [{"value": 3}, {"use": -1}, {"panel": "x" * 8200}, {"more": 1}])
 def test_wrong_messages_end_the_connection(connect, members):
     client = connect()
     client.until_told("welcome")
