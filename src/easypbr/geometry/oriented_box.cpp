@@ -24,7 +24,8 @@ BoxPoints outer_points(const BoxPoints& points) {
     std::array<Vec3d, 27> extremes;  // of direction (x, y, z) in -1 .. 1 at 9 x + 3 y + z + 13
     for (int i = 0; i < 27; ++i) {
         check_interrupt();
-        const Vec3d direction = Vec3d(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1).cwiseQuotient(size);
+        const int x = i / 9 - 1, y = i / 3 % 3 - 1, z = i % 3 - 1;
+        const Vec3d direction = Vec3d(x, y, z).cwiseQuotient(size);
         Eigen::Index farthest = 0;
         (points * direction).maxCoeff(&farthest);
         extremes[size_t(i)] = points.row(farthest).transpose();

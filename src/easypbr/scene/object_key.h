@@ -1,8 +1,8 @@
 // Which object of one snapshot is which of another.
 #pragma once
 
-#include <compare>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "easypbr/scene/scene.h"
@@ -15,7 +15,9 @@ struct ObjectKey {
     std::string root, name;
     int number = 0;
 
-    auto operator<=>(const ObjectKey&) const = default;
+    bool operator<(const ObjectKey& other) const {
+        return std::tie(root, name, number) < std::tie(other.root, other.name, other.number);
+    }
 };
 
 /// Of the objects of a snapshot, in their order.
