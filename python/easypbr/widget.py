@@ -157,12 +157,8 @@ class _Cells:
                 old.close()
 
 
-_cells = _Cells()
-
-
-def note_shown(widget: Any) -> None:
-    """The cell that runs shows a widget."""
-    _cells.shows(widget)
+#: Called with the widget that the cell which runs shows.
+note_shown: Callable[[Any], None] = _Cells().shows
 
 
 def _running_cell() -> tuple[str, str]:

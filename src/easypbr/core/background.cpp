@@ -1,7 +1,5 @@
 #include "easypbr/core/background.h"
 
-#include <unistd.h>
-
 #include <condition_variable>
 #include <mutex>
 #include <system_error>
@@ -22,7 +20,7 @@ class Working {
     }
     /// Before what they use is gone: the object is younger than the libraries' own.
     ~Working() {
-        if (process_ != getpid()) return;
+        if (!process_.is_this()) return;
         ends_ = true;
         wait();
     }
@@ -38,7 +36,7 @@ class Working {
     }
 
   private:
-    const pid_t process_ = getpid();
+    const OwnProcess process_;
     std::atomic<bool> ends_ = false;
     std::mutex mutex_;
     std::condition_variable changed_;
