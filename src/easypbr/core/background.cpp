@@ -36,7 +36,7 @@ class Working {
     }
 
   private:
-    const OwnProcess process_;
+    const OwnProcess process_{};
     std::atomic<bool> ends_ = false;
     std::mutex mutex_;
     std::condition_variable changed_;
