@@ -1,4 +1,6 @@
 // What the passes of ambient occlusion share: surfaces of the G-buffer in view space.
+#feature BOUNDED has_bounds
+
 #include "common_encoding.glsl"
 #include "common_camera.glsl"
 
@@ -6,6 +8,8 @@ uniform sampler2D u_depth_target;  // full resolution, see render/gbuffer.h
 uniform float u_radius;            // world units
 uniform float u_inverse_falloff;   // occlusion fades from full to none over this part of the radius, inverted
 uniform sampler2D u_normal;
+uniform vec3 u_occluders_center;   // of the box that holds all but the ground: world axes, from the camera
+uniform vec3 u_occluders_half;     // half its size
 
 struct Surface {
     vec2 pixel;     // centre, full resolution
@@ -45,6 +49,12 @@ float pixel_size(vec3 position) {
 // Occluders count less towards the radius and not at all beyond it.
 float distance_weight(float distance2) {
     return clamp((1.0 - sqrt(distance2) / u_radius) * u_inverse_falloff, 0.0, 1.0);
+}
+
+// Nothing is within the radius of a place on the ground.
+bool is_open(vec3 position) {
+    vec3 off = abs(u_world_from_view * position - u_occluders_center) - u_occluders_half;
+    return has_bounds && max(max(off.x, off.y), off.z) > 1.001 * u_radius;
 }
 
 // How far a surface continues another: near 1 on the same plane, falling with the fourth power of the distance from it

@@ -1,5 +1,6 @@
 // Normal-oriented hemisphere (Bavoil and Sainz 2008, the paper's method): points in the hemisphere above a surface, and
 // the part of them that lies behind what the depth buffer holds.
+#include "common_lanes.glsl"
 #include "occlusion_sample.glsl"
 #include "occlusion_surface.glsl"
 
@@ -30,9 +31,10 @@ void main() {
     float depth;
     Surface s = surface_at(gl_FragCoord.xy, depth);
     vec3 normal = towards_viewer(s.normal, to_viewer(s.position));
+    bool open = is_open(s.position);
     float sum = 0.0;
     int count = 2 * u_directions * u_steps;
-    for (int i = 0; i < u_directions; ++i) {
+    for (int i = 0; i < u_directions && any_lane(!open); ++i) {
         vec3 u = sample_point(i);
         for (int k = 0; k < 2 * u_steps; ++k) {
             // Each direction turns on by the golden angle, at growing distances.
@@ -41,5 +43,5 @@ void main() {
             sum += occluded(s, normal, s.position + cosine_direction(normal, v) * (u_radius * part));
         }
     }
-    o_visibility = pow(clamp(1.0 - sum / float(count), 0.0, 1.0), u_power);
+    o_visibility = open ? 1.0 : pow(clamp(1.0 - sum / float(count), 0.0, 1.0), u_power);
 }

@@ -110,9 +110,10 @@ void main() {
     Surface s = surface_at(gl_FragCoord.xy, depth);
     vec3 view = to_viewer(s.position);
     vec3 normal = towards_viewer(s.normal, view);
+    bool open = is_open(s.position);
 
     float occlusion = 0.0;
-    for (int i = 0; i < u_directions; ++i) {
+    for (int i = 0; i < u_directions && any_lane(!open); ++i) {
         vec3 u = sample_point(i);
         // Slices are drawn by the azimuth of cosine-distributed directions. That is each slice's share of the integral,
         // so the mean of their occluded parts is the occlusion.
@@ -128,5 +129,5 @@ void main() {
                        occluded(s, view, normal, other, -direction, u_radius * scale, u.z) * other.whole;
         occlusion += hidden / (one.whole + other.whole);
     }
-    o_visibility = pow(clamp(1.0 - occlusion / float(u_directions), 0.0, 1.0), u_power);
+    o_visibility = open ? 1.0 : pow(clamp(1.0 - occlusion / float(u_directions), 0.0, 1.0), u_power);
 }

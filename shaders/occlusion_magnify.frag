@@ -1,4 +1,5 @@
 // From half to full resolution: each pixel takes from the four texels around it what lies on its own surface.
+#include "common_lanes.glsl"
 #include "occlusion_half.glsl"
 
 uniform sampler2D u_visibility;
@@ -15,7 +16,8 @@ void main() {
 
     vec2 place = gl_FragCoord.xy * 0.5 - 0.5, corner = floor(place), part = place - corner;
     float sum = 0.0, weights = 0.0;
-    for (int i = 0; i < 4; ++i) {
+    bool open = is_open(s.position);
+    for (int i = 0; i < 4 && any_lane(!open); ++i) {
         vec2 at = vec2(float(i & 1), float(i >> 1));
         vec2 texel = clamp(corner + at + 0.5, vec2(0.5), u_surface_size - 0.5);
         float found;
@@ -26,5 +28,5 @@ void main() {
         sum += weight * textureLod(u_visibility, texel / u_surface_size, 0.0).r;
         weights += weight;
     }
-    o_visibility = weights > 0.0 ? sum / weights : 1.0;
+    o_visibility = weights > 0.0 && !open ? sum / weights : 1.0;
 }

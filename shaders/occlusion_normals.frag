@@ -21,9 +21,7 @@ vec4 neighbor(Surface s, vec2 offset) {
     return seen ? vec4(delta, 1.0 / (1.0 + 16.0 * far * far)) : vec4(0.0);
 }
 
-vec2 estimated_normal(vec2 at) {
-    float depth;
-    Surface s = full_surface(at, depth);
+vec2 estimated_normal(Surface s) {
     float reach = min(u_radius / pixel_size(s.position), u_reach);
     vec3 sum = vec3(0.0);
     // Of all triangles with two neighbours side by side: on a plane each has its normal.
@@ -56,9 +54,7 @@ vec3 along_surface(Surface s, float depth, vec2 axis) {
 }
 
 // Of the plane through a pixel and its neighbours.
-vec2 surface_normal(vec2 at) {
-    float depth;
-    Surface s = full_surface(at, depth);
+vec2 surface_normal(Surface s, float depth) {
     vec3 face = cross(along_surface(s, depth, vec2(0.0, 1.0)), along_surface(s, depth, vec2(1.0, 0.0)));
     float size = length(face);
     face = size > 0.0 ? face / size : s.normal;
@@ -68,8 +64,13 @@ vec2 surface_normal(vec2 at) {
 
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
-    bool estimated = is_eye_dome(textureLod(u_material, uv, 0.0).w);
+    float depth;
+    Surface s = full_surface(gl_FragCoord.xy, depth);
     o_normal = textureLod(u_normal, uv, 0.0).rg;
-    if (has_mapped_normals) o_normal = surface_normal(gl_FragCoord.xy);
-    if (any_lane(estimated)) o_normal = estimated ? estimated_normal(gl_FragCoord.xy) : o_normal;
+    if (has_mapped_normals) {
+        bool leans = !is_open(s.position);
+        if (any_lane(leans)) o_normal = leans ? surface_normal(s, depth) : o_normal;
+    }
+    bool estimated = is_eye_dome(textureLod(u_material, uv, 0.0).w);
+    if (any_lane(estimated)) o_normal = estimated ? estimated_normal(s) : o_normal;
 }

@@ -1,5 +1,6 @@
 // Directions for the occlusion of one pixel.
 #include "common_camera.glsl"
+#include "occlusion_surface.glsl"
 
 #feature BLURRED is_blurred
 
@@ -21,7 +22,7 @@ vec3 sample_point(int i) {
     }
     // Every pixel starts elsewhere: interleaved gradient noise (Jimenez 2014) at three places.
     int k = u_frame * u_directions + i;
-    vec2 f = vec2(0.06711056, 0.00583715), p = gl_FragCoord.xy + u_picture.xy;
+    vec2 f = vec2(0.06711056, 0.00583715), p = gl_FragCoord.xy + (has_half_resolution ? 0.5 : 1.0) * u_picture.xy;
     vec3 start = fract(52.9829189 * fract(vec3(dot(p, f), dot(p + vec2(47.0, 17.0), f.yx), dot(p + 113.0, f + f.yx))));
     return fract(start + float(k & 0xffff) * golden);
 }

@@ -121,17 +121,23 @@ TEST(AmbientOcclusion, FurnaceHoldsWithSteepNormalMaps) {
                     place(session, Vec3d(1.5, 1, 2), Vec3d(0, 0, 0), 30);
                     const Image image = render_linear(session, samples);
                     int seen = 0;
+                    double sum = 0;
                     for (int y = 0; y < 64; ++y)
                         for (int x = 0; x < 64; ++x) {
                             const float* p = image.at<float>(x, y);
                             if (p[3] != 1) continue;
                             ++seen;
-                            // 0.5 % as without a map; GPUs blend texels in steps of 1/256.
-                            ASSERT_NEAR(p[1] / 0.7f, 1, has_gpu() ? 0.006 : 0.005)
+                            sum += p[1] / 0.7f;
+                            // 0.5 % as without a map; GPUs blend texels in steps of 1/256. Where rounding
+                            // lifts a neighbour from the plane, one of 8 frames may lose a sector of one
+                            // side's 32.
+                            const double sector = samples > 1 ? 1.0 / (2 * 32 * samples) : 0;
+                            ASSERT_NEAR(p[1] / 0.7f, 1, (has_gpu() ? 0.006 : 0.005) + sector)
                                 << "metal " << metal << ", roughness " << roughness << ", samples "
                                 << samples;
                         }
                     EXPECT_GT(seen, 400);
+                    EXPECT_NEAR(sum / seen, 1, 0.003);
                 }
         }
 }
@@ -188,6 +194,48 @@ TEST(AmbientOcclusion, NoiseAveragesOut) {
     EXPECT_LT(std::sqrt(noise_many / count), 0.003);
     EXPECT_LT(noise_many, noise_few / 4);
     EXPECT_LT(std::sqrt(error / count), 0.04);
+}
+
+/// A box on the ground, and maybe a large one far below, which is not seen.
+Image on_ground(OcclusionMethod method, int samples, bool with_large) {
+    Scene scene;
+    Mesh box = make_box(Vec3(1, 1, 1));
+    box.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0.5, 0)));
+    scene.show(box, "box");
+    if (with_large) {
+        Mesh large = make_box(Vec3(200, 1, 200));
+        large.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, -50, 0)));
+        scene.show(large, "large");
+    }
+    scene.set_environment(constant_environment(1));
+    app::Session session = occlusion_session(scene, 160);
+    Settings& settings = session.settings();
+    settings.ssao.method = method;
+    settings.ssao.radius = 0.5f;
+    settings.environment.enabled = true;
+    settings.ground.mode = GroundMode::plane;
+    settings.ground.height = 0;
+    settings.ground.radius = 1000;
+    settings.camera.near = 0.1;
+    place(session, Vec3d(2, 3, 4), Vec3d(0, 0, 0), 40);
+    return render_linear(session, samples);
+}
+
+// Where the content's box is farther than the radius the ground is open, and nothing is looked up. A large
+// object out of sight widens that box to all of the ground: the picture must be the same. 0.002 is some steps
+// of the targets' half floats.
+TEST(AmbientOcclusion, GroundIsOpenBeyondTheRadius) {
+    for (const auto method : {OcclusionMethod::horizon, OcclusionMethod::hemisphere})
+        for (const int samples : {1, 4}) {
+            const Image known = on_ground(method, samples, false), unknown = on_ground(method, samples, true);
+            int differs = 0, dark = 0;
+            for (size_t i = 0; i < known.pixels<float>().size(); ++i) {
+                differs += std::abs(known.pixels<float>()[i] - unknown.pixels<float>()[i]) > 2e-3f;
+                dark += known.pixels<float>()[i] < 0.98f * known.pixels<float>()[4 * 159 * 160];
+            }
+            EXPECT_EQ(differs, 0) << int(method) << " " << samples;
+            EXPECT_GT(dark, 1000);
+        }
 }
 
 // Interreflection: the brighter the surface, the less its recesses darken; black ones are occluded as they

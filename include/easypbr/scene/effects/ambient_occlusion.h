@@ -13,7 +13,7 @@ template <template <class> class MaybeAuto>
 struct BasicSsaoSettings {
     MaybeAuto<bool> enabled{};  ///< automatic: on if the scene has faces or normals
     OcclusionMethod method = OcclusionMethod::horizon;
-    OcclusionResolution resolution = OcclusionResolution::adaptive;  ///< adaptive: full from 8 samples on
+    OcclusionResolution resolution = OcclusionResolution::adaptive;  ///< adaptive: full from 48 samples on
     MaybeAuto<float> radius{};  ///< of occluders at most, world units; automatic: 5 % of the diagonal
     float falloff = 0.6f;       ///< outer fraction of the radius over which occlusion fades, 0.01 to 1
     float power = 1;            ///< exponent of the visibility, 0 to 16

@@ -83,7 +83,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     // Where nothing is lit rays need no tree of what casts.
     const DrawList& met = list.empty() && !contents.ground ? list : casters;
     light_surfaces(seen, met, contents, {.native = native, .extensions = outputs.extensions},
-                   {.of_points = with_overlay, .mapped = opaque.has(&DrawItem::has_mapped_normals)});
+                   surfaces_in(frame, opaque, contents));
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
@@ -105,7 +105,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 }
 
 void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
-                              const LightInputs& inputs, AmbientOcclusionPass::Normals normals) {
+                              const LightInputs& inputs, const AmbientOcclusionPass::Surfaces& surfaces) {
     const ResolvedSettings& resolved = *frame.resolved;
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     if (contents.traced || contents.paths)
@@ -114,7 +114,7 @@ void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const
             if (!contents.paths && !casters.of(DrawMode::splats).empty()) ray_scene_.make_surfaces(resolved);
         });
     if (contents.paths) return trace_paths(frame, contents.tiles, inputs.native, caught);
-    if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, normals);
+    if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, surfaces);
     light(frame, targets_, contents, inputs, caught);
 }
 
@@ -149,12 +149,21 @@ void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& conte
                    [&] { background_.shade(frame, targets_, environment_, ground, transfers_); });
 }
 
-void Pipeline::occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals) {
+AmbientOcclusionPass::Surfaces Pipeline::surfaces_in(const Frame& frame, const DrawList& opaque,
+                                                     const FrameContents& contents) {
+    AmbientOcclusionPass::Surfaces surfaces{
+        .points = opaque.needs_overlay() || draws_overlay(frame, contents),
+        .mapped_normals = opaque.has(&DrawItem::has_mapped_normals)};
+    if (contents.ground && !opaque.reaches_beyond_vertices()) surfaces.occluders = bounds_of(*frame.scene);
+    return surfaces;
+}
+
+void Pipeline::occlude(const Frame& frame, bool native, const AmbientOcclusionPass::Surfaces& surfaces) {
     timer_.run("ambient occlusion", [&] {
         if (native)
-            ambient_occlusion_.shade(frame, targets_, normals, transfers_);
+            ambient_occlusion_.shade(frame, targets_, surfaces, transfers_);
         else
-            ambient_occlusion_.draw(frame, targets_, normals);
+            ambient_occlusion_.draw(frame, targets_, surfaces);
     });
 }
 
@@ -242,9 +251,8 @@ void Pipeline::find_place_light(const Frame& frame, const DrawList& list, const 
 
 bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) const {
     if (has_custom(contents.custom, Stage::overlay)) return true;
-    return std::ranges::any_of(effects_, [&](const auto& effect) {
-        return effect->draws_overlay() && effect->is_on(shot);
-    });
+    return std::ranges::any_of(
+        effects_, [&](const auto& effect) { return effect->draws_overlay() && effect->is_on(shot); });
 }
 
 bool Pipeline::spreads_light(const Shot& shot) const {
@@ -284,8 +292,7 @@ void Pipeline::occlude_surfaces(const Frame& frame, const DrawList& list) {
     if (!frame.resolved->settings.ssao.enabled) return;
     const bool native = native_shading_ && targets_.depth.is_ahead();
     if (!native && targets_.depth.is_ahead()) targets_.upload(transfers_);
-    occlude(frame, native,
-            {.of_points = list.needs_overlay(), .mapped = list.has(&DrawItem::has_mapped_normals)});
+    occlude(frame, native, surfaces_in(frame, list, {}));
 }
 
 const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,

@@ -100,7 +100,7 @@ class Pipeline {
                bool caught);
     /// Finds the light of all surfaces that are not layers, by the way that the contents ask for.
     void light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
-                        const LightInputs& inputs, AmbientOcclusionPass::Normals normals);
+                        const LightInputs& inputs, const AmbientOcclusionPass::Surfaces& surfaces);
     void trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
     /// Tells kinds that are not lit what darkens them.
@@ -139,7 +139,9 @@ class Pipeline {
     const Target* shade_points(const Frame& frame, const DrawList& layers, const Target& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
     bool is_lit_natively(const DrawList& list, const FrameContents& contents) const;
-    void occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals);
+    AmbientOcclusionPass::Surfaces surfaces_in(const Frame& frame, const DrawList& opaque,
+                                               const FrameContents& contents);
+    void occlude(const Frame& frame, bool native, const AmbientOcclusionPass::Surfaces& surfaces);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
     /// Empties the overlay, and draws the surfaces that are shown past light.

@@ -8,9 +8,11 @@
 namespace easypbr::render {
 namespace {
 
-/// From this many frames on their mean shows what half the resolution would lose, and from as many more on it
-/// is smooth without a blur.
-constexpr int frames_at_full_resolution = 8, frames_without_blur = 48;
+/// From this many frames on each takes one of the four pixels, and their mean is as smooth as a blurred
+/// frame.
+constexpr int frames_that_take_turns = 4;
+/// From this many on their mean is smooth at full resolution, too.
+constexpr int frames_at_full_resolution = 48;
 
 bool at_half_resolution(const Frame& frame) {
     const OcclusionResolution resolution = frame.resolved->settings.ssao.resolution;
@@ -67,28 +69,39 @@ void AmbientOcclusionPass::make_framebuffers() {
     blur_ = gl::Framebuffer({&blurred_.attachment()}, &depth_);
 }
 
-AmbientOcclusionPass::Plan AmbientOcclusionPass::plan_of(const Frame& frame) {
+std::vector<std::string> AmbientOcclusionPass::defines_of(const Frame& frame, const Surfaces& surfaces) {
+    std::vector<std::string> defines = camera_defines(frame);
+    if (surfaces.mapped_normals) defines.emplace_back("MAPPED_NORMALS");
+    if (!surfaces.occluders.isEmpty()) defines.emplace_back("BOUNDED");
+    return defines;
+}
+
+AmbientOcclusionPass::Plan AmbientOcclusionPass::plan_of(const Frame& frame, const Surfaces& surfaces) {
+    const OcclusionMethod method = frame.resolved->settings.ssao.method;
     Plan plan;
     plan.half = at_half_resolution(frame);
-    plan.smooth = plan.half || frame.sample_count < frames_without_blur;
-    plan.sampling =
-        frame.resolved->settings.ssao.method == OcclusionMethod::horizon ? &horizon_ : &hemisphere_;
-    plan.defines = camera_defines(frame);
+    plan.takes_turns = plan.half && frame.sample_count >= frames_that_take_turns;
+    plan.blurred = !plan.takes_turns && (plan.half || frame.sample_count < frames_at_full_resolution);
+    plan.sampling = method == OcclusionMethod::horizon ? &horizon_ : &hemisphere_;
+    plan.defines = defines_of(frame, surfaces);
     if (plan.half) plan.defines.emplace_back("HALF");
-    if (plan.smooth) plan.defines.emplace_back("BLURRED");
+    if (plan.takes_turns) plan.defines.emplace_back("TAKES_TURNS");
+    if (plan.blurred) plan.defines.emplace_back("BLURRED");
     return plan;
 }
 
-void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, Normals normals) {
-    const Plan plan = plan_of(frame);
+void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, const Surfaces& surfaces) {
+    const Plan plan = plan_of(frame, surfaces);
     targets.add_ambient_occlusion();
     const float open[4] = {1, 1, 1, 1};
     targets.occluded().clear_color(0, open);
+    occluders_ = surfaces.occluders;
     estimated_ = false;
-    if (normals.any()) estimate_normals(frame, targets, normals);
-    estimated_ = normals.any();
+    if (surfaces.needs_normals()) estimate_normals(frame, targets, surfaces);
+    estimated_ = surfaces.needs_normals();
     const PixelRect area = in_texels(frame.covered, plan.half ? 2 : 1);
-    if (!plan.smooth) return run(frame, targets, {*plan.sampling, plan.defines, targets.occluded(), area});
+    if (!plan.half && !plan.blurred)
+        return run(frame, targets, {*plan.sampling, plan.defines, targets.occluded(), area});
     make_targets(frame.size, plan.half);
     make_framebuffers();
     if (plan.half) {
@@ -99,20 +112,23 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, Normals no
         gl::copy(targets.depth_test(), depth_);
     }
     run(frame, targets, {*plan.sampling, plan.defines, sample_, area});
-    run(frame, targets, {blurring_, plan.defines, blur_, area, &sampled_, {1, 0}});
-    run(frame, targets,
-        {blurring_, plan.defines, plan.half ? sample_ : targets.occluded(), area, &blurred_, {0, 1}});
+    if (plan.blurred) {
+        const gl::Framebuffer& to = plan.half ? sample_ : targets.occluded();
+        run(frame, targets, {blurring_, plan.defines, blur_, area, &sampled_, {1, 0}});
+        run(frame, targets, {blurring_, plan.defines, to, area, &blurred_, {0, 1}});
+    }
     if (plan.half)
         run(frame, targets, {magnifying_, plan.defines, targets.occluded(), frame.covered, &sampled_});
 }
 
-void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Normals normals,
+void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, const Surfaces& surfaces,
                                  Transfers& transfers) {
-    const Plan plan = plan_of(frame);
+    const Plan plan = plan_of(frame, surfaces);
     targets.add_ambient_occlusion();
+    occluders_ = surfaces.occluders;
     estimated_ = false;
     const PixelRect held = targets.depth.area(), area = in_texels(held, plan.half ? 2 : 1);
-    if (plan.smooth) make_targets(frame.size, plan.half);
+    if (plan.half || plan.blurred) make_targets(frame.size, plan.half);
     const auto shade_to = [&](ScreenShader& shader, const Target& to, const PixelRect& pixels,
                               const Target* visibility = nullptr, Vec2 axis = {0, 0}) {
         to.write(pixels);
@@ -125,20 +141,22 @@ void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Normals n
                       .depth = of_half ? &surface_ : &targets.depth},
                      transfers);
     };
-    if (normals.any()) {
+    if (surfaces.needs_normals()) {
         make_normals(frame.size);
         normal_.write(held);
         estimating_.shade(
-            surface_inputs(frame, targets, normal_defines(frame, normals)),
+            surface_inputs(frame, targets, defines_of(frame, surfaces)),
             {.target = &normal_, .area = held, .where = native::Where::covered, .depth = &targets.depth},
             transfers);
         estimated_ = true;
     }
-    if (!plan.smooth) return shade_to(*plan.sampling, targets.ambient_occlusion, held);
+    if (!plan.half && !plan.blurred) return shade_to(*plan.sampling, targets.ambient_occlusion, held);
     if (plan.half) shade_to(selecting_, surface_, area);
     shade_to(*plan.sampling, sampled_, area);
-    shade_to(blurring_, blurred_, area, &sampled_, {1, 0});
-    shade_to(blurring_, plan.half ? sampled_ : targets.ambient_occlusion, area, &blurred_, {0, 1});
+    if (plan.blurred) {
+        shade_to(blurring_, blurred_, area, &sampled_, {1, 0});
+        shade_to(blurring_, plan.half ? sampled_ : targets.ambient_occlusion, area, &blurred_, {0, 1});
+    }
     if (plan.half) shade_to(magnifying_, targets.ambient_occlusion, held, &sampled_);
 }
 
@@ -148,16 +166,11 @@ void AmbientOcclusionPass::make_normals(Vec2i size) {
     estimate_ = gl::Framebuffer();
 }
 
-std::vector<std::string> AmbientOcclusionPass::normal_defines(const Frame& frame, Normals normals) {
-    std::vector<std::string> defines = camera_defines(frame);
-    if (normals.mapped) defines.emplace_back("MAPPED_NORMALS");
-    return defines;
-}
-
-void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets, Normals normals) {
+void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets,
+                                            const Surfaces& surfaces) {
     make_normals(frame.size);
     estimate_ = gl::Framebuffer({&normal_.drawn()}, &targets.depth_test());
-    run(frame, targets, {estimating_, normal_defines(frame, normals), estimate_, frame.covered});
+    run(frame, targets, {estimating_, defines_of(frame, surfaces), estimate_, frame.covered});
 }
 
 double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
@@ -176,6 +189,11 @@ ShaderInputs AmbientOcclusionPass::surface_inputs(const Frame& frame, const GBuf
     values.set("u_depth_target", targets.depth);
     values.set("u_normal", estimated_ ? normal_ : targets.normal);
     values.set("u_material", targets.material);
+    if (!occluders_.isEmpty()) {
+        const Vec3d center = occluders_.center() - frame.camera.position(), half = occluders_.sizes() / 2;
+        values.set("u_occluders_center", Vec3(center.cast<float>()));
+        values.set("u_occluders_half", Vec3(half.cast<float>()));
+    }
     return values;
 }
 

@@ -8,38 +8,41 @@
 namespace easypbr::render {
 
 /// Ground-truth ambient occlusion (Jimenez et al. 2016) or the normal-oriented hemisphere (Bavoil and Sainz
-/// 2008). A single frame is computed at half resolution, blurred within surfaces and magnified; the frames of
-/// a longer accumulated image each take other directions at full resolution, and their mean needs no blur.
+/// 2008), at half resolution and magnified. A single frame is blurred within surfaces. Accumulated frames
+/// take another pixel of each four and other directions each, and their mean needs no blur; that of many is
+/// computed at full resolution.
 class AmbientOcclusionPass {
   public:
-    /// Surfaces whose normals in the G-buffer are not those that visibility is about.
-    struct Normals {
-        bool of_points = false;  ///< some may have none: they get that of the surface that they sample
-        bool mapped = false;     ///< some lean from their surface, which must not hide what they face
-        bool any() const { return of_points || mapped; }
+    /// What is known of the surfaces in the G-buffer.
+    struct Surfaces {
+        bool points = false;          ///< some may have no normal: they get that of the surface they sample
+        bool mapped_normals = false;  ///< some lean from their surface, which must not hide what they face
+        Box3d occluders{};            ///< holds all but the ground; empty where it is not known
+        bool needs_normals() const { return points || mapped_normals; }
     };
     /// Adds and fills the G-buffer's visibility from its depth and normals.
-    void draw(const Frame& frame, GBuffer& targets, Normals normals);
+    void draw(const Frame& frame, GBuffer& targets, const Surfaces& surfaces);
 
     /// How far occluders are looked for, in pixels of a frame of the whole picture; 0 where it is off.
     static double reach(const Frame& whole, const Box3d& bounds);
 
     /// The same natively: from and to host memory.
-    void shade(const Frame& frame, GBuffer& targets, Normals normals, Transfers& transfers);
+    void shade(const Frame& frame, GBuffer& targets, const Surfaces& surfaces, Transfers& transfers);
 
   private:
     struct Step;
     struct Plan {
-        bool half = false, smooth = false;
+        bool half = false, blurred = false;
+        bool takes_turns = false;  ///< of the four pixels that one of half the resolution stands for
         ScreenShader* sampling = nullptr;
         std::vector<std::string> defines;
     };
-    Plan plan_of(const Frame& frame);
+    static std::vector<std::string> defines_of(const Frame& frame, const Surfaces& surfaces);
+    Plan plan_of(const Frame& frame, const Surfaces& surfaces);
     void make_targets(Vec2i size, bool half);
     void make_framebuffers();
     void make_normals(Vec2i size);
-    void estimate_normals(const Frame& frame, const GBuffer& targets, Normals normals);
-    static std::vector<std::string> normal_defines(const Frame& frame, Normals normals);
+    void estimate_normals(const Frame& frame, const GBuffer& targets, const Surfaces& surfaces);
     ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets,
                                 const std::vector<std::string>& defines) const;
     ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets,
@@ -56,6 +59,7 @@ class AmbientOcclusionPass {
     Target normal_;  ///< the G-buffer's and estimated ones
     gl::Framebuffer estimate_;
     bool estimated_ = false;
+    Box3d occluders_;
     ScreenShader estimating_{"occlusion_normals.frag", native::Shader::occlusion_normals};
     ScreenShader selecting_{"occlusion_select.frag", native::Shader::occlusion_select};
     ScreenShader horizon_{"occlusion_horizon.frag", native::Shader::occlusion_horizon};

@@ -39,8 +39,8 @@ void add_ssao(Table& table) {
                          "Ambient occlusion algorithm: horizon-based (ground-truth ambient occlusion), or "
                          "point samples in the normal-oriented hemisphere."));
     table.push_back(make("ssao.resolution", EASYPBR_AT(ssao.resolution),
-                         "Resolution of the ambient occlusion buffer: half, full, or adaptive (full from 8 "
-                         "samples on, else half)."));
+                         "Resolution of the ambient occlusion buffer: half, full, or adaptive (full from "
+                         "48 samples on, else half)."));
     table.push_back(make(
         "ssao.radius", EASYPBR_AT(ssao.radius),
         "Maximum distance of occluders; automatic: 5 % of the diagonal of the bounding box of the content.",
