@@ -57,7 +57,7 @@ void set_lights(Scene& scene, const Box3d& bounds, int count, double azimuth_deg
                      across = std::sqrt(1 - z * z);
         const Vec3d way(across * std::cos(angle), z, across * std::sin(angle));
         Light light;
-        light.position = (bounds.center() + distance * way).cast<float>();
+        light.position = bounds.center() + distance * way;
         light.intensity = float(distance * distance / count);
         scene.set_light(fmt::format("light {}", i), light);
     }

@@ -16,7 +16,7 @@ int main() {
         show(make_plane(3), "floor");
 
         Light lamp;
-        lamp.position = Vec3(1.5f, 2, 1);
+        lamp.position = Vec3d(1.5, 2, 1);
         lamp.intensity = 4;
 
         Viewer view(Vec2i(800, 600));

@@ -51,7 +51,7 @@ TEST_F(Player, MovesLights) {
     rig.lights[0].users = {{"lamp", 0}, {"removed", 0}};
     rig.lights[0].value = [](const std::vector<double>&, const Eigen::Affine3d& T_world_node) {
         Light light;
-        light.position = T_world_node.translation().cast<float>();
+        light.position = T_world_node.translation();
         return light;
     };
     Scene scene;
@@ -63,10 +63,10 @@ TEST_F(Player, MovesLights) {
     player_.add("box", Animations(rig), scene);
     player_.play(0);
     clock_.tick();
-    EXPECT_EQ(scene.light("box/lamp").position, Vec3(0.25f, 0, 0));
+    EXPECT_EQ(scene.light("box/lamp").position, Vec3d(0.25, 0, 0));
     EXPECT_FALSE(scene.light("box/lamp").casts_shadows);
     EXPECT_EQ(scene.light("box/lamp").radius.value(), 0.5f);
-    EXPECT_EQ(scene.light("other").position, Vec3(0, 0, 0));
+    EXPECT_EQ(scene.light("other").position, Vec3d(0, 0, 0));
     EXPECT_EQ(scene.light_names().size(), 2u);
     rig.lights[0].users = {{"lamp", 3}};
     EXPECT_THROW(Animations{rig}, ArgumentError);

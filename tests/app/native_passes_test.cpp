@@ -291,7 +291,7 @@ Scene shadowed(AlphaMode mode, bool textured) {
     for (const LightType type : {LightType::point, LightType::directional}) {
         Light light;
         light.type = type;
-        light.position = Vec3(0.4f, 2.5f, 0.3f);
+        light.position = Vec3d(0.4, 2.5, 0.3);
         light.direction = Vec3(0.2f, -1, 0.1f);
         light.intensity = type == LightType::point ? 30.0f : 2.0f;
         light.radius = 0.1f;

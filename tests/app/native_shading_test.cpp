@@ -179,8 +179,8 @@ class Generator {
     Light light() {
         Light light;
         light.type = LightType(between(0, 5));
-        light.position = Vec3(number(-4, 4), number(2, 5), number(-4, 4));
-        light.direction = -light.position.normalized();
+        light.position = Vec3d(number(-4, 4), number(2, 5), number(-4, 4));
+        light.direction = -light.position.normalized().cast<float>();
         light.color = color();
         const bool small = light.type == LightType::point || light.type == LightType::spot;
         light.intensity = small ? 40.0f : 2.0f;

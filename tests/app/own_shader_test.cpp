@@ -206,7 +206,7 @@ TEST(OwnShader, CutsHolesForLightAndPickingToo) {
                 Light light;
                 light.type = directional ? LightType::directional : LightType::point;
                 light.direction = Vec3(0, -0.8f, -1).normalized();
-                light.position = 20 * Vec3(0, 0.8f, 1).normalized();
+                light.position = 20 * Vec3d(0, 0.8, 1).normalized();
                 light.intensity = directional ? 3 : 1200;
                 scene.set_light("light", light);
                 Session session = plain_session(scene, 64);

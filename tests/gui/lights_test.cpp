@@ -30,7 +30,7 @@ class LightsPanel : public testing::Test {
         Scene scene;
         scene.show(make_sphere(1, 32), "ball");
         Light lamp;
-        lamp.position = {0, 1.5f, 0};
+        lamp.position = {0, 1.5, 0};
         lamp.intensity = 4;
         scene.set_light("lamp", lamp);
         return scene;
@@ -123,7 +123,7 @@ TEST_F(LightsPanel, AddedLightsShineAreChosenAndUndone) {
     EXPECT_EQ(session_.scene().light_names(), (std::vector<std::string>{"lamp", "light", "light-2"}));
     EXPECT_EQ(view_.drawing().selection().light, "light-2");
     // Beside, above and before the ball, seen from 6 away: (3, 3, 3), 27 away from it by the square root.
-    EXPECT_LT((session_.scene().light("light").position - Vec3(3, 3, 3)).norm(), 1e-5f);
+    EXPECT_LT((session_.scene().light("light").position - Vec3d(3, 3, 3)).norm(), 1e-5);
     EXPECT_NEAR(session_.scene().light("light").intensity, 3 * 27, 1e-3);
     const Image lit = session_.render({Vec2i(64, 48), 1});
     EXPECT_GT(int(lit.at<uint8_t>(32, 20)[0]), int(before.at<uint8_t>(32, 20)[0]) + 5);

@@ -71,10 +71,10 @@ TEST(GltfPlaced, FollowsTheNodesAboveIt) {
     const float half = float(std::sqrt(0.5));
     animate(builder, {{"node", 1}, {"path", "rotation"}}, {0, half, 0, half, 0, half, 0, half});
     const io::LoadedScene scene = decode(builder);
-    EXPECT_EQ(scene.lights.at("spot").position, Vec3(0, 1, 0));
+    EXPECT_EQ(scene.lights.at("spot").position, Vec3d(0, 1, 0));
     const auto lights = scene.animations.lights(0, 1);
     ASSERT_EQ(lights.size(), 1u);  // What stands apart is left alone.
-    EXPECT_EQ(lights.at("spot").position, Vec3(3, 1, 0));
+    EXPECT_EQ(lights.at("spot").position, Vec3d(3, 1, 0));
     EXPECT_EQ(lights.at("spot").direction, Vec3(0, 0, -1));
     EXPECT_EQ(lights.at("spot").intensity, 10);
     EXPECT_EQ(scene.animations.cameras(0, 1).at("eye").position(), Vec3d(3, 1, 0));
@@ -90,7 +90,7 @@ TEST(GltfPlaced, ChangesLights) {
     EXPECT_EQ(spot_after("range", {2, 4}).range, 3);
     EXPECT_NEAR(spot_after("spot/innerConeAngle", {0, 0.5}).inner_cone_deg, degrees(0.25), 1e-4);
     EXPECT_NEAR(spot_after("spot/outerConeAngle", {0.5, 1}).outer_cone_deg, degrees(0.75), 1e-4);
-    EXPECT_EQ(spot_after("intensity", {10, 30}).position, Vec3(0, 1, 0));
+    EXPECT_EQ(spot_after("intensity", {10, 30}).position, Vec3d(0, 1, 0));
 }
 
 TEST(GltfPlaced, ChangesCameras) {

@@ -336,7 +336,7 @@ TEST(Gltf, PlacesNodesCamerasAndLightsInTheWorld) {
     const Light lamp = scene.lights.at("lamp");
     EXPECT_EQ(lamp.type, LightType::spot);
     EXPECT_LT((lamp.direction - Vec3(-1, 0, 0)).norm(), 1e-6);
-    EXPECT_LT((lamp.position - Vec3(3, 2, 3)).norm(), 1e-6);
+    EXPECT_LT((lamp.position - Vec3d(3, 2, 3)).norm(), 1e-6);
     EXPECT_EQ(lamp.intensity, 7);
     EXPECT_EQ(lamp.range, 5);
     EXPECT_NEAR(lamp.outer_cone_deg, 30, 1e-4);

@@ -65,7 +65,7 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
     Light lamp;
     lamp.type = LightType::spot;
     lamp.enabled = false;
-    lamp.position = {0.1f, 1e-30f, 3e20f};
+    lamp.position = {0.1, 1e-30, 3e20};
     lamp.direction = {1, 0, 0};
     lamp.color = {0.3f, 0.7f, 1};
     lamp.intensity = 1.0f / 3;

@@ -52,7 +52,7 @@ TEST(AmbientOcclusion, WorksAtAnySize) {
 TEST(AmbientOcclusion, LeavesDirectLightAlone) {
     const Scene scene = teapot_on_floor();
     Light light;
-    light.position = Vec3(1, 3, 2);
+    light.position = Vec3d(1, 3, 2);
     light.intensity = 20;
     Scene lit = scene;
     lit.set_light("light", light);

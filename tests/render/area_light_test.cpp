@@ -18,7 +18,7 @@ const Vec3d eye(0.4, -3, 2.2);
 Light area_light(LightType type, const Vec3& position, const Vec3& direction) {
     Light light;
     light.type = type;
-    light.position = position;
+    light.position = position.cast<double>();
     light.direction = direction;
     light.intensity = 3;
     light.size = Vec2(0.9f, 0.5f);

@@ -74,7 +74,7 @@ TEST(CaughtLight, OfASquareLamp) {
         scene.show(square, "square");
         Light lamp;
         lamp.type = LightType::rectangle;
-        lamp.position = Vec3(0, float(2 - height), 0);
+        lamp.position = Vec3d(0, 2 - height, 0);
         lamp.direction = Vec3(0, -1, 0);
         lamp.size = Vec2(4, 4);
         scene.set_light("lamp", lamp);

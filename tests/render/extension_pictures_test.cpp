@@ -72,7 +72,7 @@ double difference(const Material& a, const Material& b) {
     for (const Material* m : {&a, &b}) {
         Scene scene;
         Light light;
-        light.position = Vec3(2, 3, 4);
+        light.position = Vec3d(2, 3, 4);
         light.intensity = 20;
         scene.set_light("light", light);
         app::Session session = session_of(*m, scene);

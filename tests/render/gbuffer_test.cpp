@@ -114,7 +114,7 @@ TEST(GBuffer, BothSidesAreLit) {
         scene.show(mesh, "square");
         app::Session session = plain_session(scene);
         Light light;
-        light.position = Vec3(0, 0, float(z));
+        light.position = Vec3d(0, 0, z);
         light.intensity = 10;
         scene.set_light("light", light);
         look_from(session, Vec3d(0, 0, z));

@@ -29,7 +29,7 @@ TEST(Lighting, LambertUnderAPointLight) {
         Scene scene;
         scene.show(facing_square(scale, diffuse(0.5f)), "square");
         Light light;
-        light.position = scale * Vec3(0.3f, 0.2f, 2);
+        light.position = double(scale) * Vec3d(0.3, 0.2, 2);
         light.intensity = 7 * scale * scale;
         scene.set_light("point", light);
         app::Session session = plain_session(scene);
@@ -39,7 +39,8 @@ TEST(Lighting, LambertUnderAPointLight) {
         const Image image = render_linear(session);
         for (int y = 8; y < 56; y += 8)
             for (int x = 8; x < 56; x += 8) {
-                const Vec3 to_light = light.position - plane_point(x, y, 64, 5 * double(scale), 20);
+                const Vec3d to_light =
+                    light.position - plane_point(x, y, 64, 5 * double(scale), 20).cast<double>();
                 const double d2 = to_light.squaredNorm(), cosine = to_light.z() / std::sqrt(d2);
                 // What is left of the specular lobe at roughness 1 and F0 = 0 is below 0.1 % here:
                 // (1 - VoH)^5.
@@ -66,7 +67,7 @@ TEST(Lighting, DirectionalAndSpot) {
     scene.remove_light("sun");
     Light spot;
     spot.type = LightType::spot;
-    spot.position = Vec3(0, 0, 2);
+    spot.position = Vec3d(0, 0, 2);
     spot.direction = Vec3(0, 0, -1);
     spot.intensity = 8;
     spot.inner_cone_deg = 5;
@@ -83,7 +84,7 @@ TEST(Lighting, AnyNumberOfLights) {
     Scene scene;
     scene.show(facing_square(1, diffuse(0.8f)), "square");
     Light light;
-    light.position = Vec3(0, 0, 3);
+    light.position = Vec3d(0, 0, 3);
     light.intensity = 0.5f;
     scene.set_light("0", light);
     app::Session session = plain_session(scene);
@@ -91,6 +92,31 @@ TEST(Lighting, AnyNumberOfLights) {
     const float one = render_linear(session).at<float>(32, 32)[0];
     for (int i = 1; i < 150; ++i) scene.set_light(std::to_string(i), light);
     EXPECT_NEAR(render_linear(session).at<float>(32, 32)[0] / (150 * one), 1, 1e-4);
+}
+
+// At UTM coordinates a step of single precision is half a metre: a lamp 30 cm from a square must light it as
+// it does at the origin. The camera, too, is placed in double precision; what is left are roundings of
+// positions relative to it, far below 0.1 % of the light.
+TEST(Lighting, LampsFarFromTheOrigin) {
+    const auto lit_at = [](const Vec3d& place) {
+        Mesh square = facing_square(0.2f, diffuse(0.8f));
+        square.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(place)));
+        Scene scene;
+        scene.show(square, "square");
+        Light lamp;
+        lamp.position = place + Vec3d(0.13, -0.07, 0.3);
+        lamp.intensity = 0.5f;
+        lamp.radius = 0.0f;
+        scene.set_light("lamp", lamp);
+        app::Session session = plain_session(scene);
+        look_from(session, place + Vec3d(0, 0, 1), 20);
+        session.settings().camera.target = place;
+        return render_linear(session);
+    };
+    const Image here = lit_at(Vec3d::Zero()), there = lit_at(Vec3d(500000.3, 4500000.2, 100.1));
+    for (int y = 4; y < 64; y += 8)
+        for (int x = 4; x < 64; x += 8)
+            EXPECT_NEAR(there.at<float>(x, y)[0] / here.at<float>(x, y)[0], 1, 1e-3) << x << " " << y;
 }
 
 // White furnace: in a constant environment a surface that absorbs nothing disappears. The halves of the
@@ -151,7 +177,7 @@ TEST(Lighting, ExposureUndoesIntensity) {
     app::Session session = plain_session(scene);
     session.settings().tonemap.tone_operator = ToneOperator::aces;
     Light light;
-    light.position = Vec3(2, 3, 4);
+    light.position = Vec3d(2, 3, 4);
     light.intensity = 20;
     scene.set_light("light", light);
     const Image a = session.render();

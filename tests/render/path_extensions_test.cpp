@@ -159,7 +159,7 @@ TEST(PathExtensions, RoughVolumesSpreadAreaLights) {
     const double of_light = seen([](Scene& scene) {
         Light lamp;
         lamp.type = LightType::rectangle;
-        lamp.position = Vec3(0, 2, -2);
+        lamp.position = Vec3d(0, 2, -2);
         lamp.direction = Vec3(0, -1, 1);
         lamp.width_axis = Vec3(1, 0, 0);
         lamp.size = Vec2(2, 2);

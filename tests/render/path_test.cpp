@@ -136,7 +136,7 @@ TEST(Paths, PointLight) {
     Scene scene;
     scene.show(facing_square(1, surface(0.5f, 0, 1)), "square");
     Light light;
-    light.position = Vec3(0, 0, 2);
+    light.position = Vec3d(0, 0, 2);
     light.intensity = 7;
     light.radius = 0;
     scene.set_light("point", light);
@@ -393,7 +393,7 @@ TEST(Paths, DenoisingLeavesWhatHasConverged) {
     Scene scene;
     scene.show(facing_square(1, surface(0.5f, 0, 1)), "square");
     Light light;
-    light.position = Vec3(0, 0, 2);
+    light.position = Vec3d(0, 0, 2);
     light.radius = 0;
     scene.set_light("light", light);
     app::Session session = path_session(scene, 64);
@@ -453,7 +453,7 @@ TEST(Paths, EndOnceNoiseIsLow) {
     session.settings().path.denoise = Denoising::off;
     look_from(session, Vec3d(0, 0, 3), 20);
     Light light;
-    light.position = Vec3(3, 3, 3);
+    light.position = Vec3d(3, 3, 3);
     light.radius = 2;
     light.intensity = 60;
     scene.set_light("lamp", light);

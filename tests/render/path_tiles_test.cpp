@@ -80,7 +80,7 @@ struct Wall {
         ball.set_T_world_mesh(pose);
         scene.show(ball, "ball");
         Light light;
-        light.position = Vec3(4, 0, 4);
+        light.position = Vec3d(4, 0, 4);
         light.radius = 0.25f;
         light.intensity = 80;
         scene.set_light("lamp", light);

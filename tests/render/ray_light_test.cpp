@@ -285,7 +285,7 @@ TEST(RayLight, AMirrorShowsWhatALargeLampLights) {
     scene.show(card, "card");
     Light lamp;
     lamp.type = LightType::rectangle;
-    lamp.position = Vec3(0, float(1 - distance), 1);
+    lamp.position = Vec3d(0, 1 - distance, 1);
     lamp.direction = Vec3(0, 1, 0);
     lamp.size = Vec2(float(2 * half), float(2 * half));
     lamp.intensity = 1;

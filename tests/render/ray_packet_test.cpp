@@ -28,7 +28,7 @@ TEST(RayPackets, FindWhatSingleRaysFind) {
         scene.set_environment(Environment(sky));
         Light lamp;
         lamp.type = LightType::point;
-        lamp.position = Vec3(3, 3, 1);
+        lamp.position = Vec3d(3, 3, 1);
         lamp.intensity = 50;
         lamp.radius = 0.5f;
         scene.set_light("lamp", lamp);

@@ -104,7 +104,7 @@ TEST_F(ShadowCache, ACasterDrawsAll) {
 TEST_F(ShadowCache, KeptMapsShowTheSame) {
     Mesh box = session_.scene().get("a");
     box.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-0.5, 0.3, 0.2)));
-    change_light("lamp", [](Light& l) { l.position = Vec3(-1, 2, 4); });
+    change_light("lamp", [](Light& l) { l.position = Vec3d(-1, 2, 4); });
     session_.render();
     look_from(session_, Vec3d(-3, -3, 4));
     const Image kept = render_linear(session_);
@@ -119,7 +119,7 @@ TEST_F(ShadowCache, ALightThatReachesNothingDrawsNone) {
     session_.render();
     // The floor ends at x = 2, the light's range at 2.5 before the ground is there.
     const auto far_light = [](Light& l) {
-        l.position = Vec3(4.5f, 0, 0.3f);
+        l.position = Vec3d(4.5, 0, 0.3);
         l.range = 2;
     };
     EXPECT_EQ(drawn_by([&](Session&) { change_light("inside", far_light); }), 0u);
@@ -133,7 +133,7 @@ TEST_F(ShadowCache, ALightThatReachesNothingDrawsNone) {
 // A cube's face that sees nothing is drawn once something is there to be seen.
 TEST_F(ShadowCache, TheGroundNeedsMore) {
     session_.render();
-    change_light("lamp", [](Light& l) { l.position = Vec3(2.2f, 0.3f, 0.3f); });
+    change_light("lamp", [](Light& l) { l.position = Vec3d(2.2, 0.3, 0.3); });
     const uint64_t before = session_.shadow_maps_drawn();
     session_.render();
     session_.settings().ground.mode = GroundMode::plane;
@@ -157,7 +157,7 @@ TEST_F(ShadowCache, MoreLightsThanMemoryShowTheSame) {
     };
     session_.settings().shadows.resolution = 4096;
     session_.settings().shadows.mode = ShadowMode::hard;
-    change_light("lamp", [](Light& l) { l.position = Vec3(0.1f, 0.3f, 0.4f); });
+    change_light("lamp", [](Light& l) { l.position = Vec3d(0.1, 0.3, 0.4); });
     const Image all = lit_by({"lamp", "inside", "sun"}), again = render_linear(session_);
     EXPECT_TRUE(std::ranges::equal(all.bytes(), again.bytes()));
     const Image parts[] = {lit_by({"lamp"}), lit_by({"inside"}), lit_by({"sun"})};

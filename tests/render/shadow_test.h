@@ -76,7 +76,7 @@ inline Light directional(const Vec3& direction, float angular_radius_deg = 0) {
 
 inline Light point(const Vec3& position, float radius = 0) {
     Light light;
-    light.position = position;
+    light.position = position.cast<double>();
     light.radius = radius;
     light.intensity = position.squaredNorm();
     return light;

@@ -22,7 +22,7 @@ constexpr bool is_area(LightType type) {
 struct LightSource {
     LightType type = LightType::point;
     bool enabled = true;
-    Vec3 position{0, 0, 0};  ///< all but directional; the centre of area lights
+    Vec3d position{0, 0, 0};  ///< all but directional; the centre of area lights
     /// Of propagation; directional and spot. Rectangle and disc: the normal of the side that emits. Need not
     /// be of unit length.
     Vec3 direction{0, -1, 0};

@@ -21,7 +21,7 @@ std::string free_light_name(const Scene& scene) {
 Light light_beside(const ViewPoint& view) {
     Light light;
     const Vec3d offset = view.camera.T_world_cam.linear() * Vec3d(0.5, 0.5, 0.5) * view.distance();
-    light.position = (view.target + offset).cast<float>();
+    light.position = view.target + offset;
     light.intensity = float(3 * offset.squaredNorm());
     return light;
 }

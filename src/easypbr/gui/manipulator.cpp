@@ -102,10 +102,10 @@ std::optional<Subject> selected_light(GuiState& state) {
     const auto names = scene.light_names();
     if (std::ranges::find(names, state.selection().light) == names.end()) return {};
     const Light light = scene.light(state.selection().light);
-    subject.centre = light.position.cast<double>();
+    subject.centre = light.position;
     subject.apply = [&state, light, name = state.selection().light](const Eigen::Affine3d& change) {
         Light moved = light;
-        moved.position = (change * light.position.cast<double>()).cast<float>();
+        moved.position = change * light.position;
         state.live.edits().will_change_light(name);
         state.session().scene().set_light(name, moved);
     };

@@ -7,14 +7,11 @@ namespace easypbr {
 
 /// A light as it is drawn. See Light for the radius, which directional lights do not have.
 struct ResolvedLight : LightSource {
-    /// In place of LightSource's: content far from the scene's origin may be smaller than a step of float
-    /// there.
-    Vec3d position{0, 0, 0};
     float radius = 0;
 
     ResolvedLight() = default;
     ResolvedLight(const LightSource& source, float given_radius)
-        : LightSource(source), position(source.position.cast<double>()), radius(given_radius) {}
+        : LightSource(source), radius(given_radius) {}
 
     bool operator==(const ResolvedLight& other) const = default;
 };

@@ -67,7 +67,7 @@ float not_negative(double value) {
 Light light_from(LightType type, const std::vector<double>& p, const Eigen::Affine3d& T_world_node) {
     Light light;
     light.type = type;
-    light.position = T_world_node.translation().cast<float>();
+    light.position = T_world_node.translation();
     light.direction = -rigid(T_world_node).col(2).cast<float>();
     light.color = Vec3(not_negative(p[0]), not_negative(p[1]), not_negative(p[2]));
     light.intensity = not_negative(p[3]);
