@@ -70,13 +70,19 @@ void add_mesh(const Source& source, DrawList& list) {
     }
 }
 
-/// Of vertices that are drawn as something on their own.
-void add_vertices(const Source& source, DrawMode kind, DrawList& list) {
+/// Whether a kind of primitive draws surfaces of an object: lines are none.
+bool has_surface(const MeshData& mesh, DrawMode kind) {
+    return kind == DrawMode::mesh ? !mesh.F.empty() : kind != DrawMode::lines;
+}
+
+/// Of vertices that are drawn as something on their own, or beside a surface of the object, which casts.
+void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& list) {
     const MeshData& mesh = *source.object.mesh;
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
     set_kind(source, item);
     item.reaches_beyond = true;
+    item.casts = casts;
     if (kind == DrawMode::points) {
         // Labels of clouds are there to be read.
         const bool lit = source.style.lit.value_or(!source.colors.labels);
@@ -180,7 +186,7 @@ DrawList DrawList::as_surfaces() const {
 }
 
 DrawList DrawList::as_casters(bool splats) const {
-    DrawList casters = *this;
+    DrawList casters = without([](const DrawItem& item) { return !item.casts; });
     auto own = casters.overlays.extract(DrawMode::splats);
     if (!own || !splats) return casters;
     for (DrawItem& item : own.mapped()) item.alpha = AlphaMode::blend;
@@ -202,8 +208,9 @@ DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settin
         if (kind == DrawMode::splats)
             add_splats(source, list);
         else if (kind != DrawMode::mesh && kind != DrawMode::lines)
-            add_vertices(source, kind, list);
-        if (kind != DrawMode::points && style.show_points) add_vertices(source, DrawMode::points, list);
+            add_vertices(source, kind, true, list);
+        if (kind != DrawMode::points && style.show_points)
+            add_vertices(source, DrawMode::points, !has_surface(*object.mesh, kind), list);
     }
     for (DrawItem& item : list.items[DrawMode::mesh])
         if (SurfaceShader& shader = item.material.shader; shader.text.empty() && !shader.path.empty())

@@ -30,6 +30,7 @@ struct DrawItem {
     SurfaceKind kind = SurfaceKind::lit;
     bool layered = false;         ///< other surfaces are seen behind: drawn in layers over the picture
     bool reaches_beyond = false;  ///< its primitives reach beyond the vertices
+    bool casts = true;  ///< shadows, and rays meet it; no: a surface of the same object does in its stead
 
     const MeshData& mesh() const { return *object->mesh; }
     /// The factor of its pose on lengths: the cube root of that on volumes.
@@ -106,8 +107,8 @@ struct DrawList {
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
     /// surface is one where its opacity is at least one half, and so are splats together.
     DrawList as_surfaces() const;
-    /// What casts shadows and is met by rays: all surfaces, and, with `splats`, those too, which weaken light
-    /// by their opacity.
+    /// What casts shadows and is met by rays: all surfaces that cast, and, with `splats`, those too, which
+    /// weaken light by their opacity.
     DrawList as_casters(bool splats) const;
     /// Whether some of these surfaces are none in pictures.
     bool has_soft_surfaces() const { return overlays.contains(DrawMode::splats); }
