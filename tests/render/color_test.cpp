@@ -1,9 +1,14 @@
 // Colours of labels and scalars in the picture, and what is cut away or drawn over everything.
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <random>
 
 #include "easypbr/core/color.h"
+#include "easypbr/gpu/packing.h"
+#include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/scene/element_colors.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
@@ -192,6 +197,52 @@ TEST(Colors, OfANanValueAreThoseOfNothing) {
     EXPECT_EQ(int(p[1]), 0);
     EXPECT_EQ(int(p[2]), 255);
     EXPECT_FALSE(picture.at<uint8_t>(48, 48)[0] == 255 && picture.at<uint8_t>(48, 48)[2] == 255);
+}
+
+// What colours faces need not fit vertices: dots on a mesh have the colours that a cloud of its vertices has.
+TEST(Colors, OfVerticesOnTopOfFacesAreThoseOfACloud) {
+    const auto make = [](const std::function<void(MeshData&)>& add) {
+        Mesh mesh = facing_square(1);
+        mesh.edit([&](MeshData& d) {
+            add(d);
+            d.style.show_points = true;
+            d.style.lit = false;
+        });
+        return mesh;
+    };
+    Array1f::Dense values(4);
+    values << 0, 1, 2, std::numeric_limits<float>::quiet_NaN();
+    Array1i::Dense labels(2);
+    labels << 1, 5;
+    const Mesh by_scalars = make([&](MeshData&d) {
+        d.scalars = {{"x", Array1f(values)}};
+    }),
+               by_labels = make([](MeshData&d) {
+                   d.L = Array1i(Array1i::Dense{{1, 5}}.transpose());
+               });
+    for (const Mesh& mesh : {by_scalars, by_labels})
+        for (const bool cut : {false, true}) {
+            Scene scene;
+            scene.show(mesh, "square");
+            app::Session session = plain_session(scene, 64);
+            // Nothing is cut away, but what is drawn went through the cut.
+            if (cut) session.settings().clip.planes = {1, 0, 0, 2};
+            const ResolvedSettings resolved = session.resolve();
+            SpacingCache spacings;
+            DrawableCache drawables(spacings);
+            const DrawableScene drawable = drawables.apply(scene.snapshot(), resolved.settings);
+            const DrawList list = draw_list(drawable, resolved.settings, Material());
+            ASSERT_EQ(list.of(DrawMode::points).size(), 1u);
+            const DrawItem& points = list.of(DrawMode::points)[0];
+            EXPECT_TRUE(points.with_colors);
+            EXPECT_EQ(points.kind, SurfaceKind::exact);
+            const std::vector<Rgba8> expected = table_of(*mesh.snapshot());
+            ASSERT_EQ(points.mesh().C.rows(), 4);
+            for (int i = 0; i < 4; ++i) {
+                const uint32_t vertex = drawable.sources[0].own(point_element | uint32_t(i + 1)) - 1;
+                EXPECT_EQ(gpu::rgba8(points.mesh().C, i), expected[vertex]) << i;
+            }
+        }
 }
 
 TEST(Colors, OfVoxelsNameTheirOwnElements) {

@@ -24,13 +24,17 @@ struct Source {
     const InferredSettings& settings;
     const Material& textures;
     const ColorMeaning& colors;
-    bool transparent_colors = has_transparent_colors(object.mesh->C);
+    std::shared_ptr<const MeshData> data;  ///< null: the object's
+    bool transparent_colors = has_transparent_colors(mesh().C);
+
+    const MeshData& mesh() const { return data ? *data : *object.mesh; }
 };
 
 DrawItem make_item(const Source& source, const MeshPart& part) {
-    const MeshData& mesh = *source.object.mesh;
+    const MeshData& mesh = source.mesh();
     DrawItem item;
     item.object = &source.object;
+    item.data = source.data;
     item.part = part;
     item.material = overridden(material_of(mesh, part), source.settings.material, source.textures);
     item.style = source.style;
@@ -61,8 +65,8 @@ void set_kind(const Source& source, DrawItem& item) {
 }
 
 void add_mesh(const Source& source, DrawList& list) {
-    if (source.object.mesh->F.empty()) return;
-    for (const MeshPart& part : parts_of(*source.object.mesh)) {
+    if (source.mesh().F.empty()) return;
+    for (const MeshPart& part : parts_of(source.mesh())) {
         DrawItem item = make_item(source, part);
         set_kind(source, item);
         if (source.style.mode == DrawMode::voxels) item.style.flat = true;
@@ -77,7 +81,7 @@ bool has_surface(const MeshData& mesh, DrawMode kind) {
 
 /// Of vertices that are drawn as something on their own, or beside a surface of the object, which casts.
 void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& list) {
-    const MeshData& mesh = *source.object.mesh;
+    const MeshData& mesh = source.mesh();
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
     set_kind(source, item);
@@ -96,7 +100,7 @@ void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& lis
 
 /// They are unlit, and reach beyond their means.
 void add_splats(const Source& source, DrawList& list) {
-    if (source.object.mesh->V.empty()) return;
+    if (source.mesh().V.empty()) return;
     DrawItem item = make_item(source, {});
     item.kind = SurfaceKind::display;
     item.reaches_beyond = true;
@@ -109,7 +113,7 @@ bool has_lines(const MeshData& mesh, const DrawStyle& style) {
 }
 
 void add_lines(const Source& source, DrawList& list) {
-    if (!has_lines(*source.object.mesh, source.style)) return;
+    if (!has_lines(source.mesh(), source.style)) return;
     DrawItem item = make_item(source, {});
     item.kind = SurfaceKind::display;
     item.reaches_beyond = true;
@@ -201,7 +205,7 @@ DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settin
         const SceneSnapshot::Object& object = drawable.scene.objects[i];
         const DrawStyle style = resolve_style(*object.mesh, settings.style);
         if (!style.visible) continue;
-        const Source source{object, style, settings, textures, drawable.meanings[i]};
+        const Source source{object, style, settings, textures, drawable.meanings[i], {}};
         const DrawMode kind = primitive_of(*object.mesh, style);
         if (kind == DrawMode::mesh) add_mesh(source, list);
         add_lines(source, list);
@@ -209,8 +213,10 @@ DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settin
             add_splats(source, list);
         else if (kind != DrawMode::mesh && kind != DrawMode::lines)
             add_vertices(source, kind, true, list);
-        if (kind != DrawMode::points && style.show_points)
-            add_vertices(source, DrawMode::points, !has_surface(*object.mesh, kind), list);
+        if (kind == DrawMode::points || !style.show_points) continue;
+        const PointsOnTop& points = drawable.points[i];
+        const Source on_top{object, style, settings, textures, points.meaning, points.mesh};
+        add_vertices(on_top, DrawMode::points, !has_surface(*object.mesh, kind), list);
     }
     for (DrawItem& item : list.items[DrawMode::mesh])
         if (SurfaceShader& shader = item.material.shader; shader.text.empty() && !shader.path.empty())

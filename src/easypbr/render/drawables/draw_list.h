@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,9 +22,10 @@ namespace easypbr::render {
 
 struct DrawItem {
     const SceneSnapshot::Object* object = nullptr;
-    MeshPart part;                        ///< of a mesh; others are drawn whole
-    Material material;                    ///< with the settings' overrides
-    AlphaMode alpha = AlphaMode::opaque;  ///< what the material's alpha_mode stands for here
+    std::shared_ptr<const MeshData> data;  ///< what is drawn; null: the object's
+    MeshPart part;                         ///< of a mesh; others are drawn whole
+    Material material;                     ///< with the settings' overrides
+    AlphaMode alpha = AlphaMode::opaque;   ///< what the material's alpha_mode stands for here
     DrawStyle style;
     bool two_sided = true;
     bool with_colors = false;  ///< vertex colours count
@@ -32,7 +34,7 @@ struct DrawItem {
     bool reaches_beyond = false;  ///< its primitives reach beyond the vertices
     bool casts = true;  ///< shadows, and rays meet it; no: a surface of the same object does in its stead
 
-    const MeshData& mesh() const { return *object->mesh; }
+    const MeshData& mesh() const { return data ? *data : *object->mesh; }
     /// The factor of its pose on lengths: the cube root of that on volumes.
     double scale() const;
     bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }

@@ -153,6 +153,21 @@ Array1i flattened(const Array3i& F) {
     return Array1i(Array1i::Dense(Eigen::Map<const Array1i::Dense>(F.data(), F.size())));
 }
 
+/// The arrays that a drawing is made of. Materials are those of the object as it is drawn so far: a table of
+/// values has replaced them.
+std::string arrays_of(const MeshData& mesh) {
+    return fmt::format("{} {} {} {} {}", mesh.V.revision(), mesh.F.revision(), mesh.C.revision(),
+                       mesh.UV.revision(), mesh.E.revision());
+}
+
+ColorMeaning meaning_of(const ColorPlan& plan) {
+    return {.from_data = plan.source != ColorSource::material,
+            .exact = plan.exact,
+            .labels = plan.by == ColorBy::label,
+            .textured = plan.textured || plan.source == ColorSource::values,
+            .vertex_colors = plan.vertex_colors};
+}
+
 /// The points that the faces and corners of voxels came from.
 ElementSources of_voxels(const MeshData& cubes) {
     Array1i::Dense corners(cubes.V.rows());
@@ -182,63 +197,84 @@ std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const
 
 DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const InferredSettings& settings) {
     require_colors(scene, settings.style);
-    DrawableScene drawable{scene, std::vector<ColorMeaning>(scene.objects.size()),
-                           std::vector<ElementSources>(scene.objects.size())};
-    for (size_t i = 0; i < scene.objects.size(); ++i)
-        apply(drawable.scene.objects[i], settings, drawable.meanings[i], drawable.sources[i]);
+    const size_t count = scene.objects.size();
+    DrawableScene drawable{scene, std::vector<ColorMeaning>(count), std::vector<ElementSources>(count),
+                           std::vector<PointsOnTop>(count)};
+    for (size_t i = 0; i < count; ++i) apply(drawable, i, settings);
     return drawable;
 }
 
-void DrawableCache::apply(SceneSnapshot::Object& object, const InferredSettings& settings,
-                          ColorMeaning& meaning, ElementSources& sources) {
-    const MeshData own = *object.mesh;
-    const DrawStyle style = resolve_style(own, settings.style);
-    const ColorPlan plan =
-        plan_colors(own, settings.style, style.mode, object.T_world_mesh, parse_up(settings.camera.up));
-    meaning.from_data = plan.source != ColorSource::material;
-    meaning.exact = plan.exact;
-    meaning.labels = plan.by == ColorBy::label;
-    meaning.textured = plan.textured || plan.source == ColorSource::values;
-    meaning.vertex_colors = plan.vertex_colors;
-    if (!style.visible || own.V.empty()) return;
-    if (meaning.from_data)
-        object.mesh =
-            get(fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key),
-                own, sources, [&](Entry& entry) {
-                    MeshData made = with_colors(own, plan, entry.table);
-                    if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
-                    return made;
-                });
-    // Materials of the object as it is drawn so far: a table of values has replaced them.
-    const auto key = [&](const char* what, const auto&... values) {
-        const MeshData& m = *object.mesh;
-        std::string text = fmt::format("{} {} {} {} {} {}", what, m.V.revision(), m.F.revision(),
-                                       m.C.revision(), m.UV.revision(), m.E.revision());
-        ((text += fmt::format(" {}", values)), ...);
-        return text;
+void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredSettings& settings) {
+    SceneSnapshot::Object& object = drawable.scene.objects[index];
+    const SceneSnapshot::Object own = object;
+    const DrawStyle style = resolve_style(*own.mesh, settings.style);
+    const auto plan_for = [&](DrawMode mode) {
+        return plan_colors(*own.mesh, settings.style, mode, own.T_world_mesh, parse_up(settings.camera.up));
     };
-    const std::vector<Eigen::Vector4d> planes = planes_of(settings.clip, object.T_world_mesh);
-    if (!planes.empty()) {
-        std::string numbers;
-        for (const Eigen::Vector4d& plane : planes) numbers += fmt::format("{}", fmt::join(plane, " ")) + " ";
-        const std::shared_ptr<const MeshData> whole = object.mesh;
-        const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
-        object.mesh = get(key("cut", by_vertex, numbers), *whole, sources, [&](Entry& entry) {
-            return cut(*whole, planes, by_vertex, entry.sources.faces, entry.sources.points);
-        });
-    }
+    const ColorPlan plan = plan_for(style.mode);
+    drawable.meanings[index] = drawable.points[index].meaning = meaning_of(plan);
+    if (!style.visible || own.mesh->V.empty()) return;
+    const std::vector<Eigen::Vector4d> planes = planes_of(settings.clip, own.T_world_mesh);
+    const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
+    const auto dressed = [&](const ColorPlan& by, ElementSources& sources) {
+        const auto whole = colored(own, by, sources);
+        return planes.empty() ? whole : clipped(whole, planes, by_vertex, by.by == ColorBy::label, sources);
+    };
+    ElementSources& sources = drawable.sources[index];
+    object.mesh = dressed(plan, sources);
     if (style.mode == DrawMode::voxels && !object.mesh->V.empty()) {
-        const std::shared_ptr<const MeshData> centres = object.mesh;
-        const double spacing = style.voxel_size ? 0 : spacings_.get(own.V);
+        const double spacing = style.voxel_size ? 0 : spacings_.get(own.mesh->V);
         const double size = style.voxel_size ? double(*style.voxel_size) : spacing > 0 ? spacing : 1;
-        ElementSources cubes;
-        object.mesh = get(key("voxels", size), *centres, cubes, [&](Entry& entry) {
+        object.mesh = as_voxels(object.mesh, size, sources);
+    }
+    if (!style.show_points) return;
+    const ColorPlan of_points = plan_for(DrawMode::points);
+    PointsOnTop& points = drawable.points[index];
+    points.meaning = meaning_of(of_points);
+    if (of_points.key == plan.key) return;
+    ElementSources of_vertices;
+    points.mesh = dressed(of_points, of_vertices);
+    sources.points = of_vertices.points;
+}
+
+std::shared_ptr<const MeshData> DrawableCache::colored(const SceneSnapshot::Object& object,
+                                                       const ColorPlan& plan, ElementSources& sources) {
+    if (plan.source == ColorSource::material) return object.mesh;
+    const MeshData& own = *object.mesh;
+    const std::string key =
+        fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key);
+    return get(key, own, sources, [&](Entry& entry) {
+        MeshData made = with_colors(own, plan, entry.table);
+        if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
+        return made;
+    });
+}
+
+std::shared_ptr<const MeshData> DrawableCache::clipped(const std::shared_ptr<const MeshData>& whole,
+                                                       const std::vector<Eigen::Vector4d>& planes,
+                                                       bool by_vertex, bool labels, ElementSources& sources) {
+    std::string key = fmt::format("cut {} {}", by_vertex, arrays_of(*whole));
+    for (const Eigen::Vector4d& plane : planes) key += fmt::format(" {}", fmt::join(plane, " "));
+    return get(key, *whole, sources, [&](Entry& entry) {
+        MeshData rest = cut(*whole, planes, by_vertex, entry.sources.faces, entry.sources.points);
+        const Array1i& from = entry.sources.points;
+        // Colours of labels are never mixed: a vertex that a cut makes has that of the nearer one.
+        if (labels && !from.empty()) rest.C = rows_of(whole->C, {from.data(), size_t(from.size())});
+        return rest;
+    });
+}
+
+std::shared_ptr<const MeshData> DrawableCache::as_voxels(const std::shared_ptr<const MeshData>& centres,
+                                                         double size, ElementSources& sources) {
+    ElementSources cubes;
+    const auto made =
+        get(fmt::format("voxels {} {}", arrays_of(*centres), size), *centres, cubes, [&](Entry& entry) {
             MeshData mesh = voxel_mesh(*centres, size);
             entry.sources = of_voxels(mesh);
             return mesh;
         });
-        sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points), size};
-    }
+    sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points), size};
+    return made;
 }
 
 }  // namespace easypbr::render

@@ -41,10 +41,17 @@ struct ElementSources {
     }
 };
 
+/// What Style::show_points draws beside an object. Data that colour faces need not fit vertices.
+struct PointsOnTop {
+    std::shared_ptr<const MeshData> mesh;  ///< null: what the object itself is drawn of
+    ColorMeaning meaning;
+};
+
 struct DrawableScene {
     SceneSnapshot scene;  ///< the same objects in the same order, their data replaced where that is needed
     std::vector<ColorMeaning> meanings;   ///< one for each object
     std::vector<ElementSources> sources;  ///< one for each object
+    std::vector<PointsOnTop> points;      ///< one for each object
 };
 
 /// Makes and keeps what is as large as the data.
@@ -69,8 +76,16 @@ class DrawableCache {
     template <class Make>
     std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current,
                                         ElementSources& sources, Make&& make);
-    void apply(SceneSnapshot::Object& object, const InferredSettings& settings, ColorMeaning& meaning,
-               ElementSources& sources);
+    void apply(DrawableScene& drawable, size_t index, const InferredSettings& settings);
+    /// The object's data, coloured by a plan.
+    std::shared_ptr<const MeshData> colored(const SceneSnapshot::Object& object, const ColorPlan& plan,
+                                            ElementSources& sources);
+    /// What clip planes leave of data that a plan has coloured.
+    std::shared_ptr<const MeshData> clipped(const std::shared_ptr<const MeshData>& whole,
+                                            const std::vector<Eigen::Vector4d>& planes, bool by_vertex,
+                                            bool labels, ElementSources& sources);
+    std::shared_ptr<const MeshData> as_voxels(const std::shared_ptr<const MeshData>& centres, double size,
+                                              ElementSources& sources);
 
     SpacingCache& spacings_;
     RevisionCache<std::string, Entry> entries_;
