@@ -80,7 +80,8 @@ void main() {
     // Round ends: joints of polylines have no gaps.
     float past = max(max(-v_place.x, v_place.x - v_length), 0.0);
     float distance = length(vec2(past, v_place.y));
-    float coverage = clamp(u_half_width + 0.5 - distance, 0.0, 1.0) * min(1.0, 2.0 * u_half_width);
+    // The part of a pixel across the line that it covers.
+    float coverage = clamp(min(distance + u_half_width, 0.5) - max(distance - u_half_width, -0.5), 0.0, 1.0);
     if (u_dash > 0.0) {
         float phase = mod(v_place.x, 2.0 * u_dash);
         coverage *= clamp(min(phase, u_dash - phase) + 0.5, 0.0, 1.0) + clamp(phase - 2.0 * u_dash + 0.5, 0.0, 1.0);

@@ -214,12 +214,8 @@ TEST(Colors, OfVerticesOnTopOfFacesAreThoseOfACloud) {
     values << 0, 1, 2, std::numeric_limits<float>::quiet_NaN();
     Array1i::Dense labels(2);
     labels << 1, 5;
-    const Mesh by_scalars = make([&](MeshData&d) {
-        d.scalars = {{"x", Array1f(values)}};
-    }),
-               by_labels = make([](MeshData&d) {
-                   d.L = Array1i(Array1i::Dense{{1, 5}}.transpose());
-               });
+    const Mesh by_scalars = make([&](MeshData& d) { d.scalars = {{"x", Array1f(values)}}; });
+    const Mesh by_labels = make([&](MeshData& d) { d.L = Array1i(labels); });
     for (const Mesh& mesh : {by_scalars, by_labels})
         for (const bool cut : {false, true}) {
             Scene scene;

@@ -58,6 +58,24 @@ TEST(Lines, HaveTheirWidthAtAnyAngle) {
         }
 }
 
+// A line thinner than a pixel covers as much of the pixels' rows as it is wide, wherever it lies between
+// them.
+TEST(Lines, ThinOnesCoverAsMuchAsTheyAreWide) {
+    constexpr int size = 100;
+    for (const float width : {0.1f, 0.5f, 1.0f})
+        for (const float offset : {0.0f, 0.3f, 0.5f}) {
+            const float y = 2 * offset / size;
+            Scene scene;
+            scene.show(segment(Vec3(-0.9f, y, 0), Vec3(0.9f, y, 0)), "line");
+            app::Session session = looking_down(scene, size);
+            session.settings().style.line_width = width;
+            const Image image = render_linear(session);
+            double sum = 0;
+            for (int row = 0; row < size; ++row) sum += double(image.at<float>(size / 2, row)[3]);
+            EXPECT_NEAR(sum, width, 0.002) << offset;  // the overlay holds halves
+        }
+}
+
 TEST(Lines, BlendTheColoursOfTheirEnds) {
     Mesh mesh = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0));
     ArrayXf::Dense C(2, 3);
