@@ -18,11 +18,17 @@ uniform sampler2D u_nearest_line;  // depth that the first pass found
 uniform float u_half_width;   // pixels
 uniform float u_dash;         // pixels, 0: solid
 uniform float u_always;       // 1: whatever is in front
+uniform float u_nearer_end;   // 1: each half has the colour of its end
+uniform float u_from_table;   // 1: the ends have values, and these their colours in a table
+uniform sampler2D u_table;    // 256 wide
 
 noperspective in vec2 v_place;
 flat in float v_length;
 flat in vec2 v_depths;
-flat in vec4 v_start_color, v_end_color;
+flat in vec4 v_start_color, v_end_color;  // of the whole segment
+flat in vec2 v_parts;  // of the whole segment, at the ends of what is drawn
+flat in vec2 v_w;      // there
+flat in vec3 v_table;  // places of the whole segment's values, and the row
 
 layout(location = 0) out vec4 o_color;
 
@@ -73,6 +79,21 @@ bool is_behind_line(vec2 pixel, float depth) {
     return nearest > 0.0 && axial_distance(depth) > z + thickness;
 }
 
+// What part of the way from the segment's start, in space, lies at a part of its picture.
+float part_at(float place) {
+    return mix(v_parts.x, v_parts.y, place * v_w.x / mix(v_w.y, v_w.x, place));
+}
+
+vec4 color_at(float place) {
+    float part = part_at(place);
+    if (u_nearer_end > 0.5) part = part < 0.5 ? 0.0 : 1.0;
+    if (u_from_table > 0.5) {
+        float column = clamp(floor(mix(v_table.x, v_table.y, part) * 256.0), 0.0, 255.0);
+        return textureLod(u_table, vec2((column + 0.5) / 256.0, v_table.z), 0.0);
+    }
+    return mix(v_start_color, v_end_color, part);
+}
+
 void main() {
     // Beyond its ends a segment goes on at their depth: where segments meet they agree.
     float place = v_length > 0.0 ? clamp(v_place.x / v_length, 0.0, 1.0) : 0.0;
@@ -99,7 +120,7 @@ void main() {
     if (is_behind_line(gl_FragCoord.xy, depth)) discard;
     bool between = is_after(gl_FragCoord.xy, depth) && is_before(gl_FragCoord.xy, depth);
     if (!between) discard;
-    vec4 color = mix(v_start_color, v_end_color, place);
+    vec4 color = color_at(place);
     float alpha = coverage * color.a;
     o_color = vec4(color.rgb * alpha, alpha);
 }

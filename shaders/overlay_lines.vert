@@ -5,17 +5,21 @@ layout(location = 0) in vec3 a_start;
 layout(location = 1) in vec4 a_start_color;
 layout(location = 2) in vec3 a_end;
 layout(location = 3) in vec4 a_end_color;
+layout(location = 4) in vec3 a_table;  // places of the ends' values, and the row
 
 uniform mat4 u_clip_from_mesh;
 uniform vec2 u_size;
 uniform float u_half_width;  // pixels
 uniform float u_least_w;     // w of the near plane
-uniform vec3 u_color;        // linear
+uniform vec4 u_color;        // linear, in place of the ends' own where w is not 0
 
 noperspective out vec2 v_place;    // along and across the segment, pixels from its start
 flat out float v_length;           // pixels
 flat out vec2 v_depths;            // of its ends
-flat out vec4 v_start_color, v_end_color;
+flat out vec4 v_start_color, v_end_color;  // of the whole segment
+flat out vec2 v_parts;             // of the whole segment, at the ends of what is drawn
+flat out vec2 v_w;                 // there
+flat out vec3 v_table;
 invariant gl_Position;
 
 void main() {
@@ -42,8 +46,10 @@ void main() {
     v_place = vec2(beyond, side * reach);
     v_depths = vec2(a.z / a.w, b.z / b.w);
     gl_Position = vec4(pixel / (0.5 * u_size), at_end ? v_depths.y : v_depths.x, 1.0);
-    v_start_color = mix(a_start_color, a_end_color, from);
-    v_end_color = mix(a_start_color, a_end_color, to);
-    v_start_color.rgb = u_color * srgb_decode(v_start_color.rgb);
-    v_end_color.rgb = u_color * srgb_decode(v_end_color.rgb);
+    bool has_own = u_color.w == 0.0;
+    v_start_color = has_own ? vec4(srgb_decode(a_start_color.rgb), a_start_color.a) : u_color;
+    v_end_color = has_own ? vec4(srgb_decode(a_end_color.rgb), a_end_color.a) : u_color;
+    v_parts = vec2(from, to);
+    v_w = vec2(a.w, b.w);
+    v_table = a_table;
 }

@@ -313,7 +313,11 @@ void check_lines() {
                         run.random.between(0, 30),
                         {run.random.between(0.02f, 0.9f), run.random.between(0.02f, 0.1f)},
                         {run.random.unit(), run.random.unit(), run.random.unit(), run.random.unit()},
-                        {run.random.unit(), run.random.unit(), run.random.unit(), run.random.unit()}};
+                        {run.random.unit(), run.random.unit(), run.random.unit(), run.random.unit()},
+                        {run.random.between(0, 0.5f), run.random.between(0.5f, 1)},
+                        {run.random.between(0.1f, 9), run.random.between(0.1f, 9)},
+                        {run.random.between(-1, 2), run.random.between(-1, 2)},
+                        i % 4 == 0 ? 0.75f : 0.25f};
             chosen[i] = uint32_t((7 * i) % count);
         }
         kernels.draw_lines(&uniforms, region, lines, chosen, count, 1, height);

@@ -1,13 +1,16 @@
 // Lines: their width, colour, dashes and what hides them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "easypbr/gpu/line_segments.h"
 #include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/scene/label_colors.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
@@ -90,6 +93,120 @@ TEST(Lines, BlendTheColoursOfTheirEnds) {
         const float* p = image.at<float>(int(50.5f + (u - 0.5f) * 0.9f * 101), 50);
         EXPECT_NEAR(p[0], 1 - u, 0.02) << u;
         EXPECT_NEAR(p[2], u, 0.02) << u;
+    }
+}
+
+/// The picture of a line from (-0.9, 0, 0) to (0.9, 0, 0), 5 pixels wide, as sRGB codes.
+Image codes_of(const std::function<void(MeshData&)>& change, bool native, double turn_deg = 0) {
+    Mesh mesh = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0));
+    mesh.edit(change);
+    Scene scene;
+    scene.show(mesh, "line");
+    app::Session session = plain_session(scene, 101);
+    session.allow_native_shading(native);
+    session.settings().style.line_width = 5.0f;
+    const double turn = radians(turn_deg);
+    look_from(session, 3 * Vec3d(std::sin(turn), 0, std::cos(turn)), 45);
+    return session.render({std::nullopt, 1, app::Encoding::srgb8});
+}
+
+/// Where a part of the way along that line is seen, in pixels of the middle row.
+double column_of(double part, double turn_deg = 0) {
+    const double turn = radians(turn_deg), x = 1.8 * part - 0.9;
+    const double slope = x * std::cos(turn) / (3 - x * std::sin(turn));
+    return 50.5 * (1 + slope / std::tan(radians(22.5)));
+}
+
+Array1f pair(float a, float b) {
+    Array1f::Dense both(2);
+    both << a, b;
+    return Array1f(both);
+}
+
+int difference(const uint8_t* pixel, const Rgb8& color) {
+    int most = 0;
+    for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(int(pixel[c]) - int(color[c])));
+    return most;
+}
+
+// A pixel of a line has the colour of its own value, which changes evenly along the line in space, not in the
+// picture. 73 pixels have 256 colours: those that lie within the pixel count. 1: the overlay holds halves.
+TEST(Lines, HaveTheColoursOfTheirValues) {
+    const ColorTable& table = color_table(Colormap::turbo);
+    for (const bool native : {true, false})
+        for (const double turn : {0.0, 50.0}) {
+            const Image image = codes_of(
+                [](MeshData& d) {
+                    d.scalars = {{"h", pair(0, 1)}};
+                    d.style.colormap = Colormap::turbo;
+                },
+                native, turn);
+            for (const double part : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+                const int x = int(column_of(part, turn));
+                int nearest = 255;
+                for (int i = 0; i < 256; ++i) {
+                    const double column = column_of((i + 0.5) / 256, turn);
+                    if (std::abs(column - x - 0.5) > 0.75) continue;
+                    nearest = std::min(nearest, difference(image.at<uint8_t>(x, 50), table[size_t(i)]));
+                }
+                EXPECT_LE(nearest, 1) << native << ' ' << turn << ' ' << part;
+            }
+        }
+}
+
+TEST(Lines, WithAnEndWithoutValueHaveNone) {
+    for (const bool native : {true, false}) {
+        const Image image = codes_of(
+            [](MeshData& d) {
+                d.scalars = {{"h", pair(0, std::numeric_limits<float>::quiet_NaN())}};
+                d.style.nan_color = Vec3(1, 0, 1);
+            },
+            native);
+        for (const double part : {0.1, 0.5, 0.9})
+            EXPECT_LE(difference(image.at<uint8_t>(int(column_of(part)), 50), {255, 0, 255}), 1) << part;
+    }
+}
+
+TEST(Lines, HaveTheLabelOfTheNearerEnd) {
+    const GeneratedColors generated(1);
+    for (const bool native : {true, false}) {
+        const Image image = codes_of(
+            [&](MeshData& d) {
+                Array1i::Dense labels(2);
+                labels << 0, 1;
+                d.L = Array1i(labels);
+            },
+            native, 50);
+        for (const double part : {0.1, 0.4, 0.6, 0.9})
+            EXPECT_LE(difference(image.at<uint8_t>(int(column_of(part, 50)), 50),
+                                 generated.color_of(part < 0.5 ? 0 : 1)),
+                      1)
+                << part;
+    }
+}
+
+// Edges of faces that are drawn as lines are coloured by the data as lines of E are.
+TEST(Lines, OfFacesHaveTheColoursOfTheData) {
+    for (const bool native : {true, false}) {
+        Mesh mesh = facing_square(0.8f);
+        ArrayXf::Dense C(4, 3);
+        C.rowwise() = Eigen::RowVector3f(0, 0, 1);
+        mesh.set_C(ArrayXf(C));
+        Scene scene;
+        scene.show(mesh, "square");
+        app::Session session = looking_down(scene, 100);
+        session.allow_native_shading(native);
+        session.settings().style.mode = DrawMode::lines;
+        session.settings().style.line_width = 5.0f;
+        const auto color = [&] {
+            const Image image = render_linear(session);
+            return Vec3(
+                Vec4(image.at<float>(30, 10)).head<3>());  // the upper edge: 40 pixels above the middle
+        };
+        EXPECT_LT((color() - Vec3(0, 0, 1)).norm(), 0.01f) << native;
+        // A chosen colour stands in the place of the data's.
+        session.settings().style.line_color = Vec3(1, 0, 0);
+        EXPECT_LT((color() - Vec3(1, 0, 0)).norm(), 0.01f) << native;
     }
 }
 

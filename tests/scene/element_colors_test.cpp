@@ -218,6 +218,16 @@ TEST(ElementColors, ValuesOfMeshesAreMappedAfterInterpolation) {
         (std::vector<Rgba8>{opaque(table[0]), opaque(table[64]), {128, 128, 128, 255}, opaque(table[255])}));
 }
 
+TEST(ElementColors, ValuesOfLinesAreMappedAfterInterpolation) {
+    MeshData mesh = strip();
+    mesh.scalars = {{"t", values({2, 4})}};
+    const ColorPlan of_lines = plan(mesh, {}, DrawMode::lines);
+    EXPECT_EQ(of_lines.source, ColorSource::values);
+    EXPECT_NE(of_lines.key, plan(mesh, {}, DrawMode::points).key);
+    const Array1f at_vertices = element_colors(mesh, of_lines).values;
+    EXPECT_EQ(Eigen::VectorXf(at_vertices), Eigen::VectorXf(values({3, 2, 3, 4})));
+}
+
 TEST(ElementColors, ValuesOfFacesAreTheirMeanAtVertices) {
     MeshData mesh = strip();
     mesh.scalars = {{"t", values({2, 4})}};

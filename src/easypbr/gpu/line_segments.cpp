@@ -1,6 +1,7 @@
 #include "easypbr/gpu/line_segments.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/normals.h"
@@ -9,10 +10,28 @@ namespace easypbr::gpu {
 namespace {
 
 constexpr size_t segment_grain = 1 << 14;
-constexpr Rgba8 white{255, 255, 255, 255};
 
 void put(float (&to)[3], const Array3f& V, Eigen::Index row) {
     for (int k = 0; k < 3; ++k) to[k] = V(row, k);
+}
+
+Segment segment_between(const MeshData& mesh, Eigen::Index a, Eigen::Index b) {
+    Segment segment;
+    put(segment.a, mesh.V, a);
+    put(segment.b, mesh.V, b);
+    if (!mesh.C.empty()) {
+        segment.color_a = rgba8(mesh.C, a);
+        segment.color_b = rgba8(mesh.C, b);
+    }
+    if (mesh.UV.empty()) return segment;
+    const float place_a = mesh.UV(a, 0), place_b = mesh.UV(b, 0);
+    if (std::isnan(place_a) || std::isnan(place_b)) {
+        segment.row = row_of_nothing;
+    } else {
+        segment.places[0] = place_a;
+        segment.places[1] = place_b;
+    }
+    return segment;
 }
 
 struct Edge {
@@ -37,12 +56,7 @@ std::vector<Edge> face_edges(const Array3i& F) {
 std::vector<Segment> edge_segments(const MeshData& mesh) {
     std::vector<Segment> segments(size_t(mesh.E.rows()));
     parallel_for(segments.size(), segment_grain, [&](size_t i) {
-        const int a = mesh.E(Eigen::Index(i), 0), b = mesh.E(Eigen::Index(i), 1);
-        Segment& segment = segments[i];
-        put(segment.a, mesh.V, a);
-        put(segment.b, mesh.V, b);
-        segment.color_a = mesh.C.empty() ? white : rgba8(mesh.C, a);
-        segment.color_b = mesh.C.empty() ? white : rgba8(mesh.C, b);
+        segments[i] = segment_between(mesh, mesh.E(Eigen::Index(i), 0), mesh.E(Eigen::Index(i), 1));
     });
     return segments;
 }
@@ -58,11 +72,8 @@ std::vector<Segment> wireframe_segments(const MeshData& mesh) {
         for (last = first + 1; last < edges.size() && edges[last].key == edges[first].key; ++last)
             inside &= polygon(edges[last]) == polygon(edges[first]);
         if (last > first + 1 && inside) continue;
-        Segment segment;
-        put(segment.a, mesh.V, Eigen::Index(edges[first].key >> 32));
-        put(segment.b, mesh.V, Eigen::Index(edges[first].key & 0xffffffffu));
-        segment.color_a = segment.color_b = white;
-        segments.push_back(segment);
+        segments.push_back(segment_between(mesh, Eigen::Index(edges[first].key >> 32),
+                                           Eigen::Index(edges[first].key & 0xffffffffu)));
     }
     return segments;
 }
@@ -76,7 +87,6 @@ std::vector<Segment> normal_segments(const MeshData& mesh, float length) {
         Segment& segment = segments[i];
         put(segment.a, mesh.V, row);
         for (int k = 0; k < 3; ++k) segment.b[k] = mesh.V(row, k) + length * N(row, k);
-        segment.color_a = segment.color_b = white;
     });
     return segments;
 }

@@ -10,18 +10,25 @@ namespace easypbr::gpu {
 
 enum class LineKind { edges, wireframe, normals };
 
+/// Where a table of values has its colours, from the top, and the colour of what is no number.
+inline constexpr float row_of_values = 0.25f, row_of_nothing = 0.75f;
+
 /// One instance of shaders/overlay_lines.vert.
 struct Segment {
     float a[3];
-    Rgba8 color_a;  ///< sRGB-encoded
+    Rgba8 color_a{255, 255, 255, 255};  ///< sRGB-encoded
     float b[3];
-    Rgba8 color_b;
+    Rgba8 color_b{255, 255, 255, 255};
+    float places[2] = {};       ///< of the ends' values in their table
+    float row = row_of_values;  ///< of the table
 };
 
-/// The rows of E with the colours of C; white without C.
+/// The rows of E with the colours of C, white without C, and with the first coordinates of UV as places of
+/// values. A segment with an end that has no value (NaN) has none.
 std::vector<Segment> edge_segments(const MeshData& mesh);
 
-/// Each edge between two faces once, white. Edges inside of a polygon of the file (source_face) are left out.
+/// Each edge between two faces once, likewise. Edges inside of a polygon of the file (source_face) are left
+/// out.
 std::vector<Segment> wireframe_segments(const MeshData& mesh);
 
 /// From each vertex along its normal, computed where the mesh has none; white.

@@ -154,7 +154,11 @@ struct ScreenLine {
     float start[2] = {}, along[2] = {1, 0};  ///< unit direction
     float length = 0;
     float depths[2] = {};                          ///< reversed, of its ends
-    float start_color[4] = {}, end_color[4] = {};  ///< linear r g b a
+    float start_color[4] = {}, end_color[4] = {};  ///< linear r g b a, of the whole segment's ends
+    float parts[2] = {0, 1};                       ///< of the whole segment, at the ends of what is drawn
+    float ws[2] = {1, 1};                          ///< of the clip space there
+    float places[2] = {};                          ///< of values in their table, as start_color
+    float row = 0;                                 ///< of the table
 };
 
 /// Draws lines by overlay_lines over rows [y0, y1) of a region, `chosen` of them, in this order. With

@@ -148,6 +148,7 @@ using u_last_normal = Rg16;
 using u_next_depth = R32f;
 using u_next_normal = Rg16;
 using u_nearest_line = R32f;
+using u_table = Texture;
 using u_id = R32ui;
 using u_id_depth = R32f;
 using u_radiance = Rgba32f;

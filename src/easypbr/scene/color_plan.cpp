@@ -106,7 +106,9 @@ ColorBy natural_choice(const MeshData& mesh, DrawMode mode) {
 class Planner {
   public:
     Planner(const MeshData& mesh, const Style& overrides, DrawMode mode)
-        : mesh_(mesh), overrides_(overrides), mode_(mode) {}
+        : mesh_(mesh), overrides_(overrides), mode_(mode) {
+        plan_.mode = mode;
+    }
 
     ColorPlan plan(const Eigen::Affine3d& T_world_mesh, const Vec3d& up) {
         const std::optional<ColorBy> by = chosen();
@@ -182,6 +184,9 @@ class Planner {
     /// What rows of labels or scalars are drawn as.
     PerElement drawn_as(PerElement data) const { return mode_ == DrawMode::mesh ? data : PerElement::vertex; }
 
+    /// Between the vertices something is drawn that has their values.
+    bool interpolates() const { return mode_ == DrawMode::mesh || mode_ == DrawMode::lines; }
+
     void decide_labels() {
         plan_.exact = true;
         plan_.element = drawn_as(PerElement::face);
@@ -198,8 +203,7 @@ class Planner {
         const Vec3 missing = plan_.colormap == Colormap::grey ? Vec3(1, 0, 1) : Vec3(0.5f, 0.5f, 0.5f);
         plan_.nan_color = style(&Style::nan_color).value_or(missing);
         decide_array(T_world_mesh, up);
-        if (mode_ == DrawMode::mesh && plan_.element == PerElement::vertex)
-            plan_.source = ColorSource::values;
+        if (interpolates() && plan_.element == PerElement::vertex) plan_.source = ColorSource::values;
         add_to_key(plan_.colormap, plan_.min.value_or(NAN), plan_.max.value_or(NAN), plan_.nan_color.x(),
                    plan_.nan_color.y(), plan_.nan_color.z());
     }
@@ -232,8 +236,9 @@ class Planner {
     }
 
     void start_key(uint64_t revision) {
-        plan_.key = fmt::format("{} {} {} {}", int(plan_.by), int(mode_ == DrawMode::mesh),
-                                int(plan_.element), revision);
+        // Points, surfels and voxels are coloured alike.
+        const DrawMode alike = interpolates() ? mode_ : DrawMode::points;
+        plan_.key = fmt::format("{} {} {} {}", int(plan_.by), int(alike), int(plan_.element), revision);
     }
     template <class... Numbers>
     void add_to_key(Numbers... numbers) {

@@ -23,6 +23,7 @@ struct ColorPlan {
     ColorSource source = ColorSource::material;
     bool textured = true;                     ///< the material's base colour texture counts
     bool vertex_colors = true;                ///< MeshData::C counts
+    DrawMode mode = DrawMode::mesh;           ///< what they colour
     PerElement element = PerElement::vertex;  ///< what has the colours or values
     /// The colours are those of a table and mean something: labels, scalars, heights, intensities. Where they
     /// are not lit they reach the picture exactly.

@@ -287,6 +287,9 @@ __attribute__((flatten)) void draw_lines(const void* uniforms, const Region& reg
         s.v_depths = vec2(l.depths[0], l.depths[1]);
         s.v_start_color = vec4(a[0], a[1], a[2], a[3]);
         s.v_end_color = vec4(b[0], b[1], b[2], b[3]);
+        s.v_parts = vec2(l.parts[0], l.parts[1]);
+        s.v_w = vec2(l.ws[0], l.ws[1]);
+        s.v_table = vec3(l.places[0], l.places[1], l.row);
         const float end = l.start[1] + l.along[1] * l.length;
         const float top = (l.start[1] < end ? l.start[1] : end) - reach,
                     bottom = (l.start[1] < end ? end : l.start[1]) + reach;

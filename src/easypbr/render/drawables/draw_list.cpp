@@ -35,6 +35,7 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     DrawItem item;
     item.object = &source.object;
     item.data = source.data;
+    item.colors = source.colors;
     item.part = part;
     item.material = overridden(material_of(mesh, part), source.settings.material, source.textures);
     item.style = source.style;

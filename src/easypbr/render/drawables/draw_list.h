@@ -29,6 +29,7 @@ struct DrawItem {
     DrawStyle style;
     bool two_sided = true;
     bool with_colors = false;  ///< vertex colours count
+    ColorMeaning colors;       ///< how they are meant
     SurfaceKind kind = SurfaceKind::lit;
     bool layered = false;         ///< other surfaces are seen behind: drawn in layers over the picture
     bool reaches_beyond = false;  ///< its primitives reach beyond the vertices

@@ -78,13 +78,31 @@ Texture table_texture(const ElementColors& values) {
     return texture;
 }
 
+/// A value's place in its table, from 0 to 1 within its range.
+float place_of(float value, const ValueRange& range) {
+    return std::clamp((value - range.min) * (1 / (range.max - range.min)), -farthest, farthest);
+}
+
+/// Places of values at the vertices of lines; NaN stays so.
+MeshData with_places(const MeshData& mesh, const ElementColors& values) {
+    MeshData out = mesh;
+    Array2f::Dense UV(out.V.rows(), 2);
+    parallel_for(size_t(UV.rows()), drawable_grain, [&](size_t i) {
+        const auto row = Eigen::Index(i);
+        const float value = values.values(row);
+        UV.row(row) << (std::isnan(value) ? value : place_of(value, values.range)), 0.75f;
+    });
+    out.UV = Array2f(std::move(UV));
+    out.C = {};
+    return out;
+}
+
 /// Values as texture coordinates (v up) of their table: interpolated before they become colours, beyond the
 /// table's ends too. A face with a corner that is not a number has no values at all.
 MeshData with_values(const MeshData& mesh, const ElementColors& values) {
     const bool has_nan = !values.values.array().isFinite().all();
     MeshData out = has_nan ? with_own_corners(mesh) : mesh;
     Array2f::Dense UV(out.V.rows(), 2);
-    const float scale = 1 / (values.range.max - values.range.min);
     parallel_for(size_t(UV.rows()), drawable_grain, [&](size_t i) {
         const auto row = Eigen::Index(i);
         bool is_nan = false;
@@ -94,7 +112,7 @@ MeshData with_values(const MeshData& mesh, const ElementColors& values) {
         if (is_nan)
             UV.row(row) << 0.5f, 0.25f;
         else
-            UV.row(row) << std::clamp((value - values.range.min) * scale, -farthest, farthest), 0.75f;
+            UV.row(row) << place_of(value, values.range), 0.75f;
     });
     out.UV = Array2f(std::move(UV));
     out.C = {};
@@ -109,6 +127,10 @@ void show_table(Material& material, const Texture& table) {
 
 MeshData with_colors(const MeshData& mesh, const ColorPlan& plan, Texture& table) {
     ElementColors colors = element_colors(mesh, plan);
+    if (plan.source == ColorSource::values && plan.mode == DrawMode::lines) {
+        table = table_texture(colors);
+        return with_places(mesh, colors);
+    }
     if (plan.source == ColorSource::values && mesh.F.rows() <= many_faces) {
         table = table_texture(colors);
         return with_values(mesh, colors);
@@ -164,6 +186,7 @@ ColorMeaning meaning_of(const ColorPlan& plan) {
     return {.from_data = plan.source != ColorSource::material,
             .exact = plan.exact,
             .labels = plan.by == ColorBy::label,
+            .values = plan.source == ColorSource::values,
             .textured = plan.textured || plan.source == ColorSource::values,
             .vertex_colors = plan.vertex_colors};
 }

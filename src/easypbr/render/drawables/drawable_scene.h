@@ -23,7 +23,8 @@ struct ColorMeaning {
     bool from_data = false;  ///< they stand for the material's base colour
     bool exact = false;      ///< they are those of a table
     bool labels = false;     ///< that of labels
-    bool textured = true;    ///< the material's base colour texture counts
+    bool values = false;   ///< the base colour texture is a table of values, the first coordinate their place
+    bool textured = true;  ///< the material's base colour texture counts
     bool vertex_colors = true;
 };
 

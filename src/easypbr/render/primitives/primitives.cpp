@@ -17,7 +17,7 @@ Primitives make_primitives(DataCaches& caches) {
     primitives.push_back(std::make_unique<PointPrimitive>(caches));
     primitives.push_back(std::make_unique<SurfelPrimitive>(caches));
     primitives.push_back(std::make_unique<SplatPrimitive>());
-    primitives.push_back(std::make_unique<LinePrimitive>());
+    primitives.push_back(std::make_unique<LinePrimitive>(caches.textures));
     return primitives;
 }
 

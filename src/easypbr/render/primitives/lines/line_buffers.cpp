@@ -37,6 +37,7 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
     attribute(1, 4, gl::AttributeType::unorm8, offsetof(gpu::Segment, color_a));
     attribute(2, 3, gl::AttributeType::f32, offsetof(gpu::Segment, b));
     attribute(3, 4, gl::AttributeType::unorm8, offsetof(gpu::Segment, color_b));
+    attribute(4, 3, gl::AttributeType::f32, offsetof(gpu::Segment, places));
     return buffers;
 }
 
@@ -44,8 +45,13 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
 
 LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind,
                                  std::optional<float> normal_length) {
-    return {mesh.V.revision(), mesh.E.revision(), mesh.F.revision(),
-            mesh.N.revision(), mesh.C.revision(), kind,
+    return {mesh.V.revision(),
+            mesh.E.revision(),
+            mesh.F.revision(),
+            mesh.N.revision(),
+            mesh.C.revision(),
+            mesh.UV.revision(),
+            kind,
             normal_length};
 }
 

@@ -1,4 +1,4 @@
-// Line segments on the device: 32 bytes each.
+// Line segments on the device: 44 bytes each.
 #pragma once
 
 #include <optional>
@@ -32,8 +32,8 @@ class LineCache {
     }
 
   private:
-    using Key =
-        std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, gpu::LineKind, std::optional<float>>;
+    using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, gpu::LineKind,
+                           std::optional<float>>;
     static Key key_of(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
 
     RevisionCache<Key, LineBuffers> buffers_;

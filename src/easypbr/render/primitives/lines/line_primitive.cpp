@@ -12,26 +12,39 @@
 namespace easypbr::render {
 namespace {
 
+constexpr unsigned table_unit = 7;  ///< after those of surfaces and layers
+
 /// sRGB colours that stand out on most surfaces.
 const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
 
 /// Segments of an item that are drawn alike.
 struct Stroke {
     gpu::LineKind kind;
-    Vec3 color;  ///< linear, a factor on the vertices' colours
+    std::optional<Vec3> color;  ///< linear; nothing: the data's own
     std::optional<float> normal_length;
+
+    Vec4 color_or_none() const {
+        Vec4 c = Vec4::Zero();
+        if (color) c << *color, 1;
+        return c;
+    }
 };
+
+bool has_own_colors(const DrawItem& item) {
+    return item.with_colors || item.colors.values;
+}
 
 std::vector<Stroke> strokes_of(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const DrawStyle& style = item.style;
     std::vector<Stroke> strokes;
     if (style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty())) {
-        const bool colored = !mesh.E.empty() && !mesh.C.empty();
-        const Vec3 own = colored ? Vec3(1, 1, 1) : item.material.base_color;
-        strokes.push_back({mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges,
-                           style.line_color ? linear_from_srgb(*style.line_color) : own,
-                           {}});
+        std::optional<Vec3> color;
+        if (style.line_color)
+            color = linear_from_srgb(*style.line_color);
+        else if (!has_own_colors(item))
+            color = item.material.base_color;
+        strokes.push_back({mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges, color, {}});
     }
     const auto given_or = [&](const Vec3& color) {
         return linear_from_srgb(style.line_color.value_or(color));
@@ -48,7 +61,7 @@ Mat4 clip_from_mesh(const Frame& frame, const DrawItem& item) {
     return clip.cast<float>();
 }
 
-LineView screen_view_of(const Frame& frame, const DrawItem& item, const Vec3& color) {
+LineView screen_view_of(const Frame& frame, const DrawItem& item, const Vec4& color) {
     return {.clip_from_mesh = clip_from_mesh(frame, item),
             .size = frame.size.cast<float>(),
             .orthographic = frame.orthographic(),
@@ -62,6 +75,14 @@ void set_style(To& to, const DrawItem& item) {
     to.set("u_half_width", item.style.line_width / 2);
     to.set("u_dash", item.style.line_dash);
     to.set("u_always", is_over(item) ? 1.0f : 0.0f);
+}
+
+/// The same of a stroke; the table of values is set apart.
+template <class To>
+void set_colors(To& to, const DrawItem& item, const Stroke& stroke) {
+    const bool own = !stroke.color;
+    to.set("u_nearer_end", own && item.colors.labels ? 1.0f : 0.0f);
+    to.set("u_from_table", own && item.colors.values ? 1.0f : 0.0f);
 }
 
 }  // namespace
@@ -166,6 +187,7 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
     bind_surfaces(program, next);
     if (kind != Kind::nearest) depth_.bind(2);
     program.set("u_nearest_line", 2);
+    program.set("u_table", int(table_unit));
     program.set("u_least_w", frame.orthographic() ? 0.5f : float(frame.camera.near));
     const gl::DrawState nearest{
         .depth_test = gl::DepthTest::greater_equal, .write_depth = true, .write_color = false};
@@ -174,10 +196,12 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
         if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
         program.set("u_clip_from_mesh", clip_from_mesh(frame, item));
         set_style(program, item);
+        if (item.colors.values) textures_.get(item.material.base_color_texture, true).bind(table_unit);
         for (const Stroke& stroke : strokes_of(item)) {
             const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normal_length);
             if (buffers.count == 0) continue;
-            program.set("u_color", stroke.color);
+            program.set("u_color", stroke.color_or_none());
+            set_colors(program, item, stroke);
             gl::draw_quads(state, buffers.array, buffers.count);
         }
     }
@@ -211,19 +235,23 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         region_of({.target = &to, .area = area, .store = native::Store::over}, transfers);
     for (const DrawItem& item : items) {
         if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
-        ShaderInputs values;
-        values.define(camera_defines(frame));
-        if (kind == Kind::nearest) values.define("DEPTH_ONLY");
-        set_camera_uniforms(values, frame);
-        set_style(values, item);
-        set_layers(values, kind, next);
-        values.set("u_depth_target", *opaque_);
-        values.set("u_normal", *normal_);
-        if (kind != Kind::nearest) values.set("u_nearest_line", nearest_);
+        ShaderInputs of_item;
+        of_item.define(camera_defines(frame));
+        if (kind == Kind::nearest) of_item.define("DEPTH_ONLY");
+        set_camera_uniforms(of_item, frame);
+        set_style(of_item, item);
+        set_layers(of_item, kind, next);
+        of_item.set("u_depth_target", *opaque_);
+        of_item.set("u_normal", *normal_);
+        if (kind != Kind::nearest) of_item.set("u_nearest_line", nearest_);
+        if (item.colors.values)
+            of_item.set("u_table", textures_.host(item.material.base_color_texture, true));
         for (const Stroke& stroke : strokes_of(item)) {
+            ShaderInputs values = of_item;
+            set_colors(values, item, stroke);
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normal_length);
             native::draw_lines(values.native(transfers), region,
-                               screen_lines(segments, screen_view_of(frame, item, stroke.color)),
+                               screen_lines(segments, screen_view_of(frame, item, stroke.color_or_none())),
                                area.y + area.height);
         }
     }

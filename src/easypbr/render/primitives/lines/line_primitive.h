@@ -1,6 +1,7 @@
 // Lines into the overlay: unlit, wide in pixels, smooth, hidden by surfaces and by nearer lines.
 #pragma once
 
+#include "easypbr/gpu/texture_cache.h"
 #include "easypbr/render/frame/programs.h"
 #include "easypbr/render/frame/screen_shader.h"
 #include "easypbr/render/primitives/lines/line_buffers.h"
@@ -13,6 +14,9 @@ namespace easypbr::render {
 /// see no farther for it.
 class LinePrimitive final : public Primitive {
   public:
+    /// The textures are shared with others, must outlive this one, and are emptied by their owner.
+    explicit LinePrimitive(gpu::TextureCache& textures) : textures_(textures) {}
+
     DrawMode mode() const override { return DrawMode::lines; }
     void draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
                       const OverlayStep& step) override;
@@ -36,6 +40,7 @@ class LinePrimitive final : public Primitive {
     /// What tells which lines lie between the last layer and the next one.
     void set_layers(ShaderInputs& values, Kind kind, const GBuffer* next) const;
 
+    gpu::TextureCache& textures_;
     LineCache cache_;
     ProgramVariants programs_{"overlay_lines.vert", "overlay_lines.frag"};
     Target nearest_;  ///< R32F, natively: reversed depth of the nearest line

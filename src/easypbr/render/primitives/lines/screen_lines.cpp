@@ -33,14 +33,14 @@ Part part_of(const Vec4& start, const Vec4& end, const LineView& view) {
     return part;
 }
 
-Vec4 channels_of(const Rgba8& c) {
-    return Vec4(c[0], c[1], c[2], c[3]) / 255.0f;
-}
-
-void set_color(float* to, const Vec4& encoded, const Vec3& factor) {
-    const Vec3 linear = linear_from_srgb(Vec3(encoded.head<3>())).cwiseProduct(factor);
-    std::copy_n(linear.data(), 3, to);
-    to[3] = encoded.w();
+/// `given` counts where its w is not 0.
+void set_color(float* to, const Rgba8& own, const Vec4& given) {
+    Vec4 color = given;
+    if (given.w() == 0) {
+        const Vec4 encoded = Vec4(own[0], own[1], own[2], own[3]) / 255.0f;
+        color << linear_from_srgb(Vec3(encoded.head<3>())), encoded.w();
+    }
+    std::copy_n(color.data(), 4, to);
 }
 
 Vec2 pixel_of(const Vec4& clip, const Vec2& size) {
@@ -63,9 +63,14 @@ bool project(const gpu::Segment& segment, const LineView& view, native::ScreenLi
     std::copy_n(along.data(), 2, line.along);
     line.depths[0] = a.z() / a.w();
     line.depths[1] = b.z() / b.w();
-    const Vec4 first = channels_of(segment.color_a), last = channels_of(segment.color_b);
-    set_color(line.start_color, first + part.from * (last - first), view.color);
-    set_color(line.end_color, first + part.to * (last - first), view.color);
+    line.ws[0] = a.w();
+    line.ws[1] = b.w();
+    line.parts[0] = part.from;
+    line.parts[1] = part.to;
+    set_color(line.start_color, segment.color_a, view.color);
+    set_color(line.end_color, segment.color_b, view.color);
+    std::copy_n(segment.places, 2, line.places);
+    line.row = segment.row;
     return true;
 }
 

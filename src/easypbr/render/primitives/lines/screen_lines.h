@@ -15,8 +15,8 @@ struct LineView {
     Mat4 clip_from_mesh = Mat4::Identity();
     Vec2 size{0, 0};  ///< of the picture, pixels
     bool orthographic = false;
-    float near = 0;       ///< of a perspective camera
-    Vec3 color{1, 1, 1};  ///< linear, a factor on the segments' colours
+    float near = 0;          ///< of a perspective camera
+    Vec4 color{0, 0, 0, 0};  ///< linear, in place of the segments' own where w is not 0
 };
 
 /// Those that are not wholly before the near plane (or, orthographic, beyond near and far plane), which cut
