@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "easypbr/core/color.h"
 #include "easypbr/gpu/line_segments.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/scene/label_colors.h"
@@ -207,6 +208,24 @@ TEST(Lines, OfFacesHaveTheColoursOfTheData) {
         // A chosen colour stands in the place of the data's.
         session.settings().style.line_color = Vec3(1, 0, 0);
         EXPECT_LT((color() - Vec3(1, 0, 0)).norm(), 0.01f) << native;
+    }
+}
+
+// Without colours of their own lines are as dark as wireframes; a material's colour is one.
+TEST(Lines, AreDarkByDefault) {
+    const Vec3 dark = linear_from_srgb(Vec3(0.1f, 0.1f, 0.12f)), red(1, 0, 0);
+    Mesh mesh = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0));
+    for (const bool has_material : {false, true}) {
+        Material material;
+        if (has_material) material.base_color = red;
+        mesh.set_material(material);
+        Scene scene;
+        scene.show(mesh, "line");
+        app::Session session = looking_down(scene, 101);
+        session.settings().style.line_width = 5.0f;
+        const Image image = render_linear(session);
+        EXPECT_LT((Vec3(Vec4(image.at<float>(50, 50)).head<3>()) - (has_material ? red : dark)).norm(),
+                  1e-3f);
     }
 }
 

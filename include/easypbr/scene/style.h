@@ -27,7 +27,8 @@ struct Style {
     Override<float> voxel_size;  ///< edge length, world units, above 0; automatic: the data's, or the spacing
     Override<float> line_width;  ///< pixels, 0.1 to 1000; automatic: 1.5
     Override<float> line_dash;  ///< length of dashes and gaps in pixels, 0 to 10000; 0, also automatic: solid
-    Override<Vec3> line_color;  ///< automatic: vertex colours of lines, dark for wireframes, blue for normals
+    Override<Vec3> line_color;  ///< automatic: colours of the data or the material of lines, else dark; dark
+                                ///< for wireframes, blue for normals
     Override<bool> show_wireframe;  ///< edges of the faces; automatic: no
     Override<bool> show_normals;    ///< a line along each vertex normal; automatic: no
     Override<float> normal_length;  ///< world units, above 0; automatic: 2 % of the object's diagonal

@@ -399,7 +399,8 @@ void add_style(Table& table) {
         "0", "pixels", {0, 10000});
     table.push_back(color("style.line_color", EASYPBR_AT(style.line_color),
                           "Colour of lines, wireframes and normals. Automatic: the object's own value, else "
-                          "the vertex colours for lines, dark for wireframes and blue for normals."));
+                          "the colours of the data or of the material for lines that have any; dark for "
+                          "others and for wireframes, blue for normals."));
     add("show_wireframe", &Style::show_wireframe, "Draws the edges of the faces as a wireframe.", "no");
     add("show_normals", &Style::show_normals, "Draws a line along each vertex normal.", "no");
     add("normal_length", &Style::normal_length, "Length of the lines drawn by show_normals.",

@@ -34,17 +34,21 @@ bool has_own_colors(const DrawItem& item) {
     return item.with_colors || item.colors.values;
 }
 
+/// Of lines that are the shape of an item. The default of a material is none.
+std::optional<Vec3> color_of_lines(const DrawItem& item) {
+    const Vec3& base = item.material.base_color;
+    if (item.style.line_color) return linear_from_srgb(*item.style.line_color);
+    if (has_own_colors(item)) return {};
+    return base == Material().base_color ? linear_from_srgb(wireframe_color) : base;
+}
+
 std::vector<Stroke> strokes_of(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const DrawStyle& style = item.style;
     std::vector<Stroke> strokes;
     if (style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty())) {
-        std::optional<Vec3> color;
-        if (style.line_color)
-            color = linear_from_srgb(*style.line_color);
-        else if (!has_own_colors(item))
-            color = item.material.base_color;
-        strokes.push_back({mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges, color, {}});
+        strokes.push_back(
+            {mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges, color_of_lines(item), {}});
     }
     const auto given_or = [&](const Vec3& color) {
         return linear_from_srgb(style.line_color.value_or(color));
