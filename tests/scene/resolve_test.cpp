@@ -163,6 +163,30 @@ TEST(Resolve, LatchesPinsFollowsAndReleases) {
 }
 
 // What no later picture could be drawn with is not kept.
+// Voxels are whole in the picture and above the ground, whether the object's style or the settings ask for
+// them.
+TEST(Resolve, MakesRoomForVoxels) {
+    Mesh mesh = points({{0, 0, 0}, {1, 0, 0}});
+    Settings settings;
+    settings.camera.up = std::string("+Y");
+    settings.style.mode = DrawMode::voxels;
+    settings.style.voxel_size = 1.0f;
+    const ResolvedSettings overridden = resolve(scene_of(mesh), settings, size);
+    const Mat4d clip = overridden.camera.projection_matrix(4.0 / 3) * overridden.camera.view();
+    for (const double x : {-0.5, 1.5})
+        for (const double y : {-0.5, 0.5})
+            for (const double z : {-0.5, 0.5}) {
+                const Eigen::Vector4d corner = clip * Eigen::Vector4d(x, y, z, 1);
+                EXPECT_LT(std::abs(corner.x()), corner.w());
+                EXPECT_LT(std::abs(corner.y()), corner.w());
+            }
+    EXPECT_LE(overridden.settings.ground.height, -0.5);
+    mesh.set_style(settings.style);
+    settings.style = {};
+    const ResolvedSettings own = resolve(scene_of(mesh), settings, size);
+    EXPECT_EQ(own.camera.T_world_cam.matrix(), overridden.camera.T_world_cam.matrix());
+}
+
 TEST(Resolve, NamesAMeshThatIsTooLarge) {
     Scene scene;
     scene.show(blob(), "good");

@@ -95,4 +95,33 @@ TEST(Scene, BoundsOfManyVerticesAreThoseOfALoop) {
     EXPECT_EQ(scene.snapshot().bounds().max(), high);
 }
 
+// Cells around two points, turned by 45 degrees: half a cell's diagonal more on all sides in the plane of the
+// turn, half an edge along its axis.
+TEST(Scene, BoundsHoldVoxelsAndPoints) {
+    Scene scene;
+    Mesh cells = points({{0, 0, 0}, {0, 0, 1}});
+    cells.edit([](MeshData& data) { data.voxel_size = 0.5f; });
+    cells.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(pi / 4, Vec3d::UnitZ())));
+    scene.show(cells, "cells");
+    const Box3d box = scene.snapshot().bounds();
+    const double half_diagonal = 0.25 * std::sqrt(2.0);
+    EXPECT_NEAR((box.max() - Vec3d(half_diagonal, half_diagonal, 1.25)).norm(), 0,
+                1e-12);  // double precision
+    EXPECT_NEAR((box.min() + Vec3d(half_diagonal, half_diagonal, 0.25)).norm(), 0, 1e-12);
+
+    Mesh dots = points({{0, 0, 0}, {1, 0, 0}});
+    Style style;
+    style.point_size = 0.5f;
+    style.point_size_unit = SizeUnit::world;
+    dots.set_style(style);
+    scene.clear();
+    scene.show(dots, "dots");
+    EXPECT_EQ(scene.snapshot().bounds().min(), Vec3d(-0.25, -0.25, -0.25));
+    EXPECT_EQ(scene.snapshot().bounds().max(), Vec3d(1.25, 0.25, 0.25));
+    style.point_size_unit = SizeUnit::pixels;
+    dots.set_style(style);
+    scene.show(dots, "dots");
+    EXPECT_EQ(scene.snapshot().bounds().max(), Vec3d(1, 0, 0));
+}
+
 }  // namespace easypbr::scene_test

@@ -22,6 +22,9 @@ struct SceneSnapshot {
         /// is shown as "car/b" are both "car/b".
         std::string root = {};
         const void* node = nullptr;  ///< Mesh::identity()
+        /// How far what is drawn reaches beyond the vertices by the object's own style: half a voxel along
+        /// each axis of V, and the radius of points whose size is in world units.
+        double half_voxel = 0, point_radius = 0;
     };
     /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is
     /// hidden, or invisible by its style, is left out with its descendants.
@@ -30,12 +33,13 @@ struct SceneSnapshot {
     Environment environment;  ///< empty: none was given
     Vec3d origin{0, 0, 0};    ///< see Scene::origin()
 
-    /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
+    /// Bounding box in world space of all vertices with their voxels and points (exact under rotation); empty
+    /// when there are none.
     Box3d bounds() const;
 
-    /// The largest dot product of each of six world directions (rows) with the vertices' world positions: how
-    /// far the content reaches along them. Computed in double in parallel; minus infinity when there are no
-    /// vertices.
+    /// The largest dot product of each of six world directions (rows) with world positions of vertices and
+    /// their voxels and points: how far the content reaches along them. Computed in double in parallel; minus
+    /// infinity when there are no vertices.
     using Directions = Eigen::Matrix<double, 6, 3>;
     using Support = Eigen::Matrix<double, 6, 1>;
     Support support(const Directions& directions) const;

@@ -12,9 +12,12 @@ namespace easypbr::detail {
 /// Bounds of what is shown, computed when they are first asked for: with everything latched nobody asks.
 class Content {
   public:
-    explicit Content(const SceneSnapshot& scene) : scene_(scene) {}
+    /// As it is drawn with a style's overrides.
+    Content(const SceneSnapshot& scene, const Style& overrides);
+    Content(const Content&) = delete;
+    Content& operator=(const Content&) = delete;
 
-    const SceneSnapshot& scene() const { return scene_; }
+    const SceneSnapshot& scene() const { return styled_ ? *styled_ : scene_; }
     bool empty() const;
     /// Centre of the bounding box; the origin when empty.
     Vec3d centre() const;
@@ -29,6 +32,7 @@ class Content {
 
   private:
     const SceneSnapshot& scene_;
+    std::optional<SceneSnapshot> styled_;  ///< where the overrides change how far objects reach
     mutable std::optional<Box3d> bounds_;
 };
 

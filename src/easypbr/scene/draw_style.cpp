@@ -1,5 +1,8 @@
 #include "easypbr/scene/draw_style.h"
 
+#include "easypbr/core/recent_values.h"
+#include "easypbr/scene/spacing.h"
+
 namespace easypbr {
 namespace {
 
@@ -22,6 +25,17 @@ class Choice {
   private:
     const Style &overrides_, &own_;
 };
+
+/// Clouds whose spacing is kept.
+constexpr size_t most_spacings = 1 << 10;
+
+/// As they are drawn: by the spacing of the points where nobody says how large they are.
+double voxel_size_of(const MeshData& mesh, const DrawStyle& style) {
+    if (style.voxel_size) return double(*style.voxel_size);
+    static RecentValues<uint64_t, double> known(most_spacings);
+    const double spacing = known.get(mesh.V.revision(), [&] { return point_spacing(mesh.V); });
+    return spacing > 0 ? spacing : 1;
+}
 
 }  // namespace
 
@@ -57,6 +71,22 @@ DrawStyle resolve_style(const MeshData& mesh, const Style& overrides) {
     style.lit = choice(&Style::lit);
     style.overlay = choice(&Style::overlay, false);
     return style;
+}
+
+void set_reach(SceneSnapshot::Object& object, const Style& overrides) {
+    const MeshData& mesh = *object.mesh;
+    object.half_voxel = object.point_radius = 0;
+    if (mesh.V.empty()) return;
+    const DrawStyle style = resolve_style(mesh, overrides);
+    if (style.mode == DrawMode::voxels) object.half_voxel = voxel_size_of(mesh, style) / 2;
+    const bool has_points = style.show_points || primitive_of(mesh, style) == DrawMode::points;
+    if (has_points && style.point_size && style.point_size_unit == SizeUnit::world)
+        object.point_radius = double(*style.point_size) / 2;
+}
+
+bool changes_reach(const Style& overrides) {
+    return overrides.mode.value() || overrides.voxel_size.value() || overrides.show_points.value() ||
+           overrides.point_size.value() || overrides.point_size_unit.value();
 }
 
 DrawMode primitive_of(const MeshData& mesh, const DrawStyle& style) {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "easypbr/scene/mesh_data.h"
+#include "easypbr/scene/scene.h"
 
 namespace easypbr {
 
@@ -40,5 +40,11 @@ DrawStyle resolve_style(const MeshData& mesh, const Style& overrides);
 /// The kind of primitive that a mesh is drawn as in a style: voxels are meshes, surfels without normals
 /// points, and so are vertices that are to be splats and have none.
 DrawMode primitive_of(const MeshData& mesh, const DrawStyle& style);
+
+/// Sets how far what is drawn of an object reaches beyond its vertices.
+void set_reach(SceneSnapshot::Object& object, const Style& overrides);
+
+/// Whether overrides may change that.
+bool changes_reach(const Style& overrides);
 
 }  // namespace easypbr

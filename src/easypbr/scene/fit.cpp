@@ -4,6 +4,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr {
@@ -91,13 +92,19 @@ Vec2d balanced_centre(const Content& content, const Mat3d& R_world_cam, const Sl
 
 }  // namespace
 
+Content::Content(const SceneSnapshot& scene, const Style& overrides) : scene_(scene) {
+    if (!changes_reach(overrides)) return;
+    styled_ = scene;
+    for (SceneSnapshot::Object& object : styled_->objects) set_reach(object, overrides);
+}
+
 bool Content::empty() const {
     return std::all_of(scene_.objects.begin(), scene_.objects.end(),
                        [](const SceneSnapshot::Object& object) { return object.mesh->V.empty(); });
 }
 
 const Box3d& Content::bounds() const {
-    if (!bounds_) bounds_ = scene_.bounds();
+    if (!bounds_) bounds_ = scene().bounds();
     return *bounds_;
 }
 
@@ -210,7 +217,7 @@ Mat3d view_rotation(const CameraSettings& settings) {
 
 Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
                   double aspect, const Insets& insets) {
-    const detail::Content content(scene);
+    const detail::Content content(scene, {});
     if (content.empty()) throw ArgumentError("camera: there are no vertices to fit a camera to");
     const detail::PictureShape picture{aspect, insets};
     Camera camera = detail::lens_of(settings);

@@ -154,7 +154,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
                                         max_image_side, size.x(), size.y()));
     for (const Field& field : fields()) checked(field, field.get(given));
     require_poses(scene);
-    const detail::Content content(scene);
+    const detail::Content content(scene, given.style);
     Settings settings = given;
     ResolvedSettings resolved;
     if (!settings.camera.up.value()) detail::fill(settings.camera.up, detail::inferred_up(scene));

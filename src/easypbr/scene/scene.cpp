@@ -10,6 +10,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/recent_values.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/spacing.h"
 
@@ -50,6 +51,7 @@ void add_nodes(const Mesh& mesh, const std::string& name, const std::string& roo
     if (!data->style.visible.value_or(true)) return;
     const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
     objects.push_back({name, data, T_world_mesh, root, mesh.identity()});
+    set_reach(objects.back(), {});
     for (const Mesh& child : data->children)
         if (!shown.count(child.identity()))
             add_nodes(child, name + "/" + child.name(), root, T_world_mesh, depth + 1, shown, objects);
@@ -128,7 +130,9 @@ SceneSnapshot::Support SceneSnapshot::support(const Directions& directions) cons
         const Directions local = directions * object.T_world_mesh.linear();
         const Support own = known.get({object.mesh->V.revision(), has_outliers(*object.mesh), local},
                                       [&] { return support_of(*object.mesh, local); });
-        result = result.cwiseMax(Support(own + directions * object.T_world_mesh.translation()));
+        const Support beyond = object.half_voxel * local.cwiseAbs().rowwise().sum() +
+                               object.point_radius * directions.rowwise().norm();
+        result = result.cwiseMax(Support(own + beyond + directions * object.T_world_mesh.translation()));
     }
     return result;
 }

@@ -230,6 +230,7 @@ DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const InferredSet
 void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredSettings& settings) {
     SceneSnapshot::Object& object = drawable.scene.objects[index];
     const SceneSnapshot::Object own = object;
+    object.half_voxel = object.point_radius = 0;  // kinds of primitives tell how far they reach
     const DrawStyle style = resolve_style(*own.mesh, settings.style);
     const auto plan_for = [&](DrawMode mode) {
         return plan_colors(*own.mesh, settings.style, mode, own.T_world_mesh, parse_up(settings.camera.up));
