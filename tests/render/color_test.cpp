@@ -176,6 +176,36 @@ TEST(Colors, OfAChosenRangeStayWhereTheirValuesAre) {
     }
 }
 
+// Texture coordinates repeat at each pixel, not at the vertices: from 0 to 4 across a square they are four
+// ramps. 2 codes: the texture has 256 steps, and its colours are linear values of 16 bits on the way.
+TEST(Colors, OfTextureCoordinatesRepeat) {
+    Mesh mesh = facing_square(1);
+    mesh.edit([](MeshData& d) {
+        d.UV = Array2f(Array2f::Dense(4 * d.UV));
+        d.style.lit = false;
+        d.style.color_by = ColorBy::uv;
+    });
+    Scene scene;
+    scene.show(mesh, "square");
+    for (const bool native : {true, false}) {
+        app::Session session = plain_session(scene, 128);
+        session.allow_native_geometry(native);
+        look_from(session, Vec3d(0, 0, 4));
+        const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+        const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+        const auto coordinate = [&](double pixel) {
+            const double u = 2 * (1 + (pixel + 0.5 - 64) / pixels_per_unit);
+            return 255 * (u - std::floor(u));
+        };
+        for (int x = 10; x < 118; ++x) {
+            const double red = coordinate(x), green = coordinate(127 - 30);
+            if (red < 4 || red > 251) continue;  // at a border either side may be hit
+            EXPECT_NEAR(picture.at<uint8_t>(x, 30)[0], red, 2) << native << ' ' << x;
+            EXPECT_NEAR(picture.at<uint8_t>(x, 30)[1], green, 2) << native << ' ' << x;
+        }
+    }
+}
+
 TEST(Colors, OfANanValueAreThoseOfNothing) {
     Mesh mesh = facing_square(1);
     mesh.edit([](MeshData& d) {

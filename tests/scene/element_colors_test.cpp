@@ -259,7 +259,8 @@ TEST(ElementColors, NormalsAndTextureCoordinatesAreTheirNumbers) {
     EXPECT_EQ(normals,
               (std::vector<Rgba8>{
                   {255, 128, 128, 255}, {128, 0, 128, 255}, {128, 128, 255, 255}, {128, 128, 128, 255}}));
-    const auto uv = colors(mesh, by(ColorBy::uv)).colors;
+    EXPECT_EQ(plan(mesh, by(ColorBy::uv)).source, ColorSource::coordinates);
+    const auto uv = colors(mesh, by(ColorBy::uv), DrawMode::points).colors;
     EXPECT_EQ(uv,
               (std::vector<Rgba8>{{0, 255, 0, 255}, {51, 51, 0, 255}, {51, 0, 0, 255}, {153, 0, 0, 255}}));
     mesh.N = {};

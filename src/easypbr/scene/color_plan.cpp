@@ -130,6 +130,7 @@ class Planner {
                 break;
             case ColorBy::uv:
                 start_key(mesh_.UV.revision());
+                if (mode_ == DrawMode::mesh) plan_.source = ColorSource::coordinates;
                 break;
             default:
                 return plan_;

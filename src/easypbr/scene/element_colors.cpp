@@ -115,7 +115,7 @@ Array1f plan_values(const MeshData& mesh, const ColorPlan& plan) {
 
 ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan) {
     ElementColors result;
-    if (plan.source == ColorSource::material) return result;
+    if (plan.source == ColorSource::material || plan.source == ColorSource::coordinates) return result;
     if (plan.by == ColorBy::label) result.colors = label_colors(mesh, plan.element);
     if (plan.by == ColorBy::normal) result.colors = normal_colors(mesh, plan);
     if (plan.by == ColorBy::uv) result.colors = uv_colors(mesh);

@@ -11,9 +11,10 @@
 namespace easypbr {
 
 enum class ColorSource {
-    material,  ///< the material's colour, with its textures and the vertex colours as ColorPlan says
-    colors,    ///< a colour for each element
-    values,    ///< a value for each vertex: to be interpolated before it is mapped to a colour
+    material,     ///< the material's colour, with its textures and the vertex colours as ColorPlan says
+    colors,       ///< a colour for each element
+    values,       ///< a value for each vertex: to be interpolated before it is mapped to a colour
+    coordinates,  ///< the texture coordinates: to be interpolated before they repeat and become colours
 };
 
 /// What colours an object, decided. Cheap to make: what is of the size of the data comes with
@@ -54,7 +55,7 @@ ColorPlan plan_colors(const MeshData& mesh, const Style& overrides, DrawMode mod
 /// Throws ArgumentError or NameError when overrides ask for labels, scalars or others that no object has.
 void require_colors(const SceneSnapshot& scene, const Style& overrides);
 
-/// One of these by ColorPlan::source; for `material` all are empty.
+/// One of these by ColorPlan::source; for `material` and `coordinates` all are empty.
 struct ElementColors {
     std::vector<Rgba8> colors;  ///< sRGB, one for each vertex or face
     Array1f values;             ///< one for each vertex; NaN: no value

@@ -78,6 +78,18 @@ Texture table_texture(const ElementColors& values) {
     return texture;
 }
 
+/// Texture coordinates (v up) as red and green; it repeats.
+Texture coordinates_texture() {
+    auto image = std::make_shared<Image>(256, 256, 4, PixelType::u8);
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x)
+            std::ranges::copy(Rgba8{uint8_t(x), uint8_t(255 - y), 0, 255}, image->at<uint8_t>(x, y));
+    Texture texture;
+    texture.image = image;
+    texture.filter = Filter::nearest;
+    return texture;
+}
+
 /// A value's place in its table, from 0 to 1 within its range.
 float place_of(float value, const ValueRange& range) {
     return std::clamp((value - range.min) * (1 / (range.max - range.min)), -farthest, farthest);
@@ -126,6 +138,12 @@ void show_table(Material& material, const Texture& table) {
 }
 
 MeshData with_colors(const MeshData& mesh, const ColorPlan& plan, Texture& table) {
+    if (plan.source == ColorSource::coordinates) {
+        table = coordinates_texture();
+        MeshData out = mesh;
+        out.C = {};
+        return out;
+    }
     ElementColors colors = element_colors(mesh, plan);
     if (plan.source == ColorSource::values && plan.mode == DrawMode::lines) {
         table = table_texture(colors);
@@ -187,7 +205,8 @@ ColorMeaning meaning_of(const ColorPlan& plan) {
             .exact = plan.exact,
             .labels = plan.by == ColorBy::label,
             .values = plan.source == ColorSource::values,
-            .textured = plan.textured || plan.source == ColorSource::values,
+            .textured = plan.textured || plan.source == ColorSource::values ||
+                        plan.source == ColorSource::coordinates,
             .vertex_colors = plan.vertex_colors};
 }
 

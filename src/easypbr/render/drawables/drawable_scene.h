@@ -71,7 +71,7 @@ class DrawableCache {
     struct Entry {
         std::shared_ptr<const MeshData> arrays;
         ElementSources sources;  ///< of the arrays that they were made of
-        Texture table;           ///< of values; empty for colours
+        Texture table;           ///< of values or texture coordinates; empty for colours
     };
     /// The entry's arrays as the current object's; where there is none, make(entry) gives its arrays.
     template <class Make>
