@@ -139,6 +139,23 @@ def test_polygons_are_fans(square, faces):
 
 # Dicts and tables.
 
+def test_values_of_polygons_stay_theirs_with_as_many_triangles_as_vertices():
+    """2 x 3 quads: 6 polygons, 12 vertices, 12 triangles. What 12 values belong to is decided by their number in a mesh."""
+    x, y = np.meshgrid(np.arange(4.0), np.arange(3.0))
+    corner = (np.arange(2)[:, None] * 4 + np.arange(3)).reshape(-1, 1)
+    arrays = {"V": np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3), "F": corner + [0, 1, 5, 4], "C": np.full((12, 3), 0.5)}
+    at_vertices = np.arange(12.0)
+    mesh = as_mesh(arrays | {"area": np.arange(6.0), "labels": np.arange(6), "heat": at_vertices})
+    assert len(mesh.F) == 12 and len(mesh.V) == len(mesh.C) == 13
+    np.testing.assert_array_equal(mesh.scalars["area"], np.repeat(np.arange(6), 2))
+    np.testing.assert_array_equal(mesh.L, np.repeat(np.arange(6), 2))
+    np.testing.assert_array_equal(mesh.scalars["heat"][:12], at_vertices)
+    np.testing.assert_array_equal(mesh.V[12], mesh.V[11])
+    only_labels = as_mesh(arrays | {"labels": np.arange(6)})
+    np.testing.assert_array_equal(only_labels.L, np.repeat(np.arange(6), 2))
+    assert len(as_mesh(arrays | {"heat": at_vertices}).V) == 12, "nothing to tell apart"
+
+
 
 def test_dicts_as_polyscope_and_npz_have_them(square):
     V, F = square

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .._easypbr import Mesh
 from ..errors import ArgumentError, UnknownNameError
 from ..tensors import as_numpy
-from .maker import Maker, colors, fan, triangles
+from .maker import PER_VERTEX, Maker, colors, fan, triangles
 
 #: What arrays of a mesh are called: here, in NPZ files, in pandas and in Polyscope. The first is Mesh's own name.
 NAMES: dict[str, tuple[str, ...]] = {
@@ -64,16 +64,35 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
     scalars = dict(named.pop("scalars", None) or {})
     scalars.update({word: _scalar(word, value, count, faces) for word, value in others.items()})
     if face_of is not None:
-        scalars = {key: _spread(value, count, face_of) for key, value in scalars.items()}
-        given["L"] = _spread(given.get("L"), count, face_of)
+        given, scalars = _spread(given, scalars, count, face_of)
     return make.mesh(scalars=scalars, **given, **named)
 
 
-def _spread(values: Any, count: int, face_of: NDArray[Any]) -> Any:
-    """Values per polygon as values per triangle."""
-    if values is None or len(values) == count:
-        return values
-    return np.asarray(as_numpy(values))[face_of]
+def _spread(
+    arrays: dict[str, Any], scalars: dict[str, Any], count: int, face_of: NDArray[Any]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Values per polygon as values per triangle. If there are as many triangles as vertices, they would pass for values of
+    the vertices: the last vertex is repeated then, as the readers of files do."""
+    polygons = int(face_of[-1]) + 1
+
+    def is_spread(values: Any) -> bool:
+        return values is not None and len(values) == polygons != count
+
+    repeats = len(face_of) == count and any(map(is_spread, (arrays.get("L"), *scalars.values())))
+
+    def placed(values: Any) -> Any:
+        return _with_last_again(values) if repeats and values is not None and len(values) == count else values
+
+    def spread(values: Any) -> Any:
+        return np.asarray(as_numpy(values))[face_of] if is_spread(values) else placed(values)
+
+    arrays = arrays | {name: placed(arrays[name]) for name in PER_VERTEX if name in arrays} | {"L": spread(arrays.get("L"))}
+    return arrays, {name: spread(values) for name, values in scalars.items()}
+
+
+def _with_last_again(values: Any) -> NDArray[Any]:
+    array = np.asarray(as_numpy(values))
+    return np.concatenate([array, array[-1:]])
 
 
 def _scalar(word: str, value: Any, count: int, faces: int) -> NDArray[Any]:
