@@ -80,7 +80,9 @@ def test_further_columns_are_those_of_a_text_file(tmp_path):
     ({"points": POINTS, "colors": POINTS * 300}, "colours: expected 0 to 1 or 0 to 255, got"),
     ({"points": POINTS, "colors": -POINTS}, "colours: expected 0 to 1 or 0 to 255, got"),
     ({"points": POINTS, "V": POINTS}, "'V' is V, which is given already"),
-    ({"points": POINTS, "heat": POINTS[:7, 0]}, "no array 'heat'; a dict may hold V, F"),
+    ({"points": POINTS, "heat": POINTS}, "no array 'heat'; a dict may hold V, F"),
+    ({"points": POINTS, "heat": POINTS[:7, 0]}, "scalars 'heat': expected 40 values, one for each vertex, got 7"),
+    ({"points": POINTS, "faces": [[0, 1, 2, 3]], "heat": [1, 2]}, "40 values, one for each vertex, or 1, one for each face, got 2"),
     ([shapes.box(), 7], "cannot show a builtins.int"),
 ])  # fmt: skip
 def test_errors_name_what_is_accepted(what, message):
@@ -137,10 +139,8 @@ def test_polygons_are_fans(square, faces):
     np.testing.assert_array_equal(mixed.scalars["area"], [1, 1, 0.5])
 
 
-# Dicts and tables.
-
 def test_values_of_polygons_stay_theirs_with_as_many_triangles_as_vertices():
-    """2 x 3 quads: 6 polygons, 12 vertices, 12 triangles. What 12 values belong to is decided by their number in a mesh."""
+    """2 x 3 quads: 6 polygons, 12 vertices, 12 triangles. 12 values are those of vertices."""
     x, y = np.meshgrid(np.arange(4.0), np.arange(3.0))
     corner = (np.arange(2)[:, None] * 4 + np.arange(3)).reshape(-1, 1)
     arrays = {"V": np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3), "F": corner + [0, 1, 5, 4], "C": np.full((12, 3), 0.5)}
@@ -155,6 +155,8 @@ def test_values_of_polygons_stay_theirs_with_as_many_triangles_as_vertices():
     np.testing.assert_array_equal(only_labels.L, np.repeat(np.arange(6), 2))
     assert len(as_mesh(arrays | {"heat": at_vertices}).V) == 12, "nothing to tell apart"
 
+
+# Dicts and tables.
 
 
 def test_dicts_as_polyscope_and_npz_have_them(square):

@@ -99,6 +99,9 @@ def _scalar(word: str, value: Any, count: int, faces: int) -> NDArray[Any]:
     array = np.asarray(as_numpy(value)) if not isinstance(value, str) else np.empty(0, str)
     if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in (count, faces) and len(array):
         return array.astype(np.float32) if array.dtype.kind == "b" else array
+    if array.dtype.kind in "biuf" and array.ndim == 1 and count:
+        of_faces = f", or {faces}, one for each face" if faces >= 0 else ""
+        raise ArgumentError(f"scalars '{word}': expected {count} values, one for each vertex{of_faces}, got {len(array)}")
     raise UnknownNameError(
         f"a mesh has no array '{word}'; a dict may hold {', '.join(NAMES)} (points, vertices, faces, normals, colors, ...), "
         f"{', '.join(_OTHERS)}, and scalars: arrays with a number for each vertex or face"
