@@ -36,6 +36,18 @@ def test_active_scalars_are_drawn_with_a_color_bar(pyvista):
     assert as_mesh(ball).style.scalar == "number"
 
 
+def test_scalars_that_are_not_active_colour_when_asked_for(pyvista):
+    """As PyVista draws them. Texture coordinates are no scalars, whatever they are called."""
+    ball = pyvista.Sphere()
+    ball.point_data.set_array(ball.points[:, 2], "height")
+    for data, name in ((pyvista.Cube(), "FaceIndex"), (ball, "height")):
+        mesh = as_mesh(data)
+        assert list(mesh.scalars) == [name]
+        np.testing.assert_array_equal(drawn(data), drawn(mesh, color_by="solid"))
+        assert (drawn(data) != drawn(data, scalar=name)).any()
+    assert list(as_mesh(pyvista.Plane()).scalars) == []
+
+
 def test_colors_of_points_and_cells(pyvista):
     box = pyvista.Cube().triangulate()
     colors = np.random.default_rng(0).integers(0, 256, (box.n_cells, 3)).astype(np.uint8)

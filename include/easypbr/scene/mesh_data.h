@@ -29,7 +29,7 @@ struct MeshPart {
 struct ScalarArray {
     std::string name;        ///< not empty, unique within a mesh
     Array1f values;          ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
-    bool from_file = false;  ///< one of many that came with a file: colours the mesh only when asked for
+    bool from_file = false;  ///< came with a file or data set: colours the mesh only when asked for
 };
 
 /// What makes n vertices the means of 3D Gaussians (Kerbl et al., "3D Gaussian Splatting for Real-Time

@@ -169,12 +169,14 @@ class _Fields:
         self.scalars: dict[str, NDArray[Any]] = {}
         self.shown = active[1] if active is not None and active[0] == where else None
         self._make = make
+        attributes = data.GetNormals(), data.GetTCoords()
+        own = {*_OWN_NAMES, *(array.GetName() for array in attributes if array is not None)} - {self.shown}
         for i in range(data.GetNumberOfArrays()):
             # Of texts and other objects there is only an abstract array.
             array, name = data.GetArray(i), data.GetAbstractArray(i).GetName() or f"array_{i}"
             if array is None:
                 make.leave_out(f"the array '{name}', which holds no numbers")
-            elif name not in _OWN_NAMES:
+            elif name not in own:
                 self._take(name, _numpy(array))
 
     def _take(self, name: str, values: NDArray[Any]) -> None:
@@ -201,6 +203,8 @@ class _Fields:
 
 
 def _finish(mesh: Mesh, fields: tuple[_Fields, ...], make: Maker) -> Mesh:
+    """Active scalars colour the mesh, others only when asked for."""
+    mesh._keep_scalars_aside()
     for field in fields:
         if field.shown is not None and field.shown in mesh.scalars:
             make.show_scalars(mesh, field.shown)

@@ -128,6 +128,14 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
             "Named scalar fields of vertices or faces: mesh.scalars['heat'] = values adds or replaces, del "
             "removes; assign a dict to replace all.")
         .def("_scalars", scalars_of)
+        .def("_keep_scalars_aside",
+             [](Mesh& m) {
+                 released([&] {
+                     m.edit([](MeshData& data) {
+                         for (ScalarArray& scalar : data.scalars) scalar.from_file = true;
+                     });
+                 });
+             })
         .def(
             "add_scalar",
             [](Mesh& m, const std::string& name, const ArrayLike& values) {
