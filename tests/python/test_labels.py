@@ -122,6 +122,20 @@ def test_label_maps_are_files(tmp_path):
         LabelMap.load(tmp_path / "none.txt")
 
 
+@pytest.mark.parametrize("flags", [
+    [True, False, True, True], np.array([True, False, True, True]), np.array([[1], [0], [1], [1]], bool), "torch",
+], ids=["list", "array", "column", "torch"])  # fmt: skip
+def test_booleans_are_labels_and_scalars(flags):
+    if isinstance(flags, str):
+        flags = pytest.importorskip("torch").tensor([True, False, True, True])
+    mesh = square()
+    mesh.add_scalar("a", flags)
+    mesh.scalars["b"] = flags
+    assert mesh.scalars["a"].tolist() == mesh.scalars["b"].tolist() == [1, 0, 1, 1]
+    mesh.assign(scalars={"c": flags}, L=flags)
+    assert mesh.scalars["c"].tolist() == mesh.L.tolist() == [1, 0, 1, 1]
+
+
 def test_scalars_have_names():
     mesh = square()
     mesh.add_scalar("height", [0, 1, 2, 3])

@@ -226,6 +226,12 @@ AnyArray numeric_array(nb::handle object, const char* what) {
     return nb::cast<AnyArray>(numeric_object(object, what));
 }
 
+nb::object flags_as_numbers(nb::handle object, const char* what) {
+    const nb::object array = numpy_array(object, what);
+    const bool flags = nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b";
+    return flags ? array.attr("astype")("int32") : array;
+}
+
 std::string shape_text(const AnyArray& array) {
     std::string text;
     for (size_t i = 0; i < array.ndim(); ++i) text += fmt::format("{}{}", i ? " x " : "", array.shape(i));

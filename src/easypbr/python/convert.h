@@ -44,6 +44,9 @@ using AnyArray = nb::ndarray<nb::ro, nb::device::cpu>;
 nb::object numeric_object(nb::handle object, const char* what);
 AnyArray numeric_array(nb::handle object, const char* what);
 
+/// The object as a numpy array of any type, in which booleans are 0 and 1. Throws ArgumentError.
+nb::object flags_as_numbers(nb::handle object, const char* what);
+
 /// "10 x 3 float64".
 std::string shape_text(const AnyArray& array);
 

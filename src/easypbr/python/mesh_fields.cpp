@@ -43,17 +43,10 @@ void refuse_scores(nb::handle object) {
     throw ArgumentError(fmt::format("mesh array L: expected n labels, got {}; {}", text, advice));
 }
 
-nb::object flags_as_numbers(nb::handle object) {
-    if (!nb::hasattr(object, "dtype")) return nb::borrow(object);
-    const nb::object numbers = nb::module_::import_("easypbr.tensors").attr("as_numpy")(object);
-    const nb::object array = nb::module_::import_("numpy").attr("asarray")(numbers);
-    const bool flags = nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b";
-    return flags ? array.attr("astype")("int32") : nb::borrow(object);
-}
-
 Array1f scalar_values(const std::string& name, nb::handle values) {
     const std::string array = fmt::format("scalars['{}']", name);
-    return to_array<float, 1>(values, {array.c_str(), 1, 1});
+    const nb::object numbers = flags_as_numbers(values, fmt::format("mesh array {}", array).c_str());
+    return to_array<float, 1>(numbers, {array.c_str(), 1, 1});
 }
 
 nb::dict scalars_of(const Mesh& mesh) {
@@ -74,7 +67,7 @@ MeshChange prepare_labels(nb::handle object) {
     Array1i labels;
     if (!object.is_none()) {
         refuse_scores(object);
-        const nb::object numbers = flags_as_numbers(object);
+        const nb::object numbers = flags_as_numbers(object, "mesh array L");
         try {
             labels = to_array<int32_t, 1>(numbers, {"L", 1, 1});
         } catch (const ArgumentError& error) {
@@ -143,7 +136,8 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
                 released([&] { m.add_scalar(name, numbers); });
             },
             nb::arg("name"), nb::arg("values"),
-            "Adds or replaces a named scalar field, one value per vertex or per face (NaN: missing).")
+            "Adds or replaces a named scalar field, one value per vertex or per face (NaN: missing). "
+            "Booleans are 0 and 1.")
         .def(
             "remove_scalar",
             [](Mesh& m, const std::string& name) { released([&] { m.remove_scalar(name); }); },
