@@ -205,6 +205,12 @@ TEST(Fields, SayWhatTheyExpected) {
               "setting 'camera.pose': expected none or 16 numbers, got (1, 2)");
     EXPECT_NE(message_of("clip.planes", "1,2,3").find("expected a multiple of 4 numbers, up to "),
               std::string::npos);
+    EXPECT_EQ(message_of("clip.planes", "nan,0,0,0"),
+              "setting 'clip.planes': expected finite numbers, got (nan, 0, 0, 0)");
+    EXPECT_EQ(message_of("clip.box", "0,2,0,1,1,1"),
+              "setting 'clip.box': expected none or 6 numbers, no minimum above its maximum, got (0, 2, 0, "
+              "1, 1, 1)");
+    EXPECT_EQ(message_of("clip.box", "0,1,0,1,1,1"), "accepted") << "a flat box";
     EXPECT_EQ(message_of("camera.margin", "auto"), "setting 'camera.margin': expected 0 to 0.9, got 'auto'");
     for (const char* text : {"", "nan", "inf", "1e999", "12abc", "1,2"})
         EXPECT_NE(message_of("environment.rotation_deg", text), "accepted") << text;

@@ -41,6 +41,7 @@ struct FieldInfo {
     std::vector<std::string> choices;
     std::vector<size_t> sizes;  ///< allowed lengths of a vector
     bool whole = false;         ///< the number, or each of a vector's, is a whole one
+    bool is_box = false;        ///< a vector of a box's minimum, then its maximum
 };
 
 template <class Owner>

@@ -293,6 +293,13 @@ inline Field with_sizes(Field field, std::vector<size_t> sizes) {
     return field;
 }
 
+/// A box's minimum, then its maximum, or nothing.
+inline Field with_box(Field field) {
+    field.sizes = {0, 6};
+    field.is_box = true;
+    return field;
+}
+
 using Table = std::vector<Field>;
 
 }  // namespace easypbr::detail

@@ -75,7 +75,8 @@ std::string describe_sizes(const std::vector<size_t>& sizes) {
 
 std::string describe_vector(const FieldInfo& field) {
     const bool free = field.min <= -FLT_MAX && field.max >= FLT_MAX;
-    return describe_sizes(field.sizes) + (free ? "" : ", each " + describe_range(field));
+    return describe_sizes(field.sizes) + (free ? "" : ", each " + describe_range(field)) +
+           (field.is_box ? ", no minimum above its maximum" : "");
 }
 
 std::string describe_expected(const FieldInfo& field) {
@@ -113,6 +114,11 @@ std::string describe_given(const Value& value) {
     return std::visit(Printer{}, value.data);
 }
 
+bool is_finite(const Value& value) {
+    const auto* numbers = std::get_if<std::vector<double>>(&value.data);
+    return !numbers || std::ranges::all_of(*numbers, [](double number) { return std::isfinite(number); });
+}
+
 [[noreturn]] void reject(const FieldInfo& field, const Value& value, std::string_view owner) {
     std::string hint;
     if (field.type == FieldType::choice)
@@ -120,7 +126,8 @@ std::string describe_given(const Value& value) {
             hint = did_you_mean(*text, field.choices);
     const std::string place =
         owner.empty() ? fmt::format("setting '{}'", field.name) : fmt::format("{}{}", owner, field.name);
-    throw ArgumentError(fmt::format("{}: expected {}, got {}{}", place, describe_expected(field),
+    throw ArgumentError(fmt::format("{}: expected {}, got {}{}", place,
+                                    is_finite(value) ? describe_expected(field) : "finite numbers",
                                     describe_given(value), hint));
 }
 
@@ -129,8 +136,16 @@ bool is_allowed(const FieldInfo& field, double number) {
            (!field.whole || number == std::floor(number));
 }
 
+/// Whether no number of the first half is above its counterpart of the second.
+bool is_ordered(const std::vector<double>& box) {
+    const auto half = std::ptrdiff_t(box.size() / 2);
+    return std::ranges::equal(box.begin(), box.begin() + half, box.begin() + half, box.end(),
+                              std::less_equal<>());
+}
+
 bool is_allowed(const FieldInfo& field, const std::vector<double>& numbers) {
     return std::find(field.sizes.begin(), field.sizes.end(), numbers.size()) != field.sizes.end() &&
+           (!field.is_box || is_ordered(numbers)) &&
            std::all_of(numbers.begin(), numbers.end(),
                        [&](double number) { return is_allowed(field, number); });
 }

@@ -465,11 +465,10 @@ void add_clipping(Table& table) {
                                     "Clipping planes in world space, four numbers nx, ny, nz, d each; points "
                                     "p with n . p + d >= 0 are kept."),
                                lengths));
-    table.push_back(with_sizes(
+    table.push_back(with_box(
         make("clip.box", EASYPBR_AT(clip.box),
              "Clipping box in world space, minimum x, y, z, then maximum x, y, z; its inside is kept.",
-             "world units"),
-        {0, 6}));
+             "world units")));
 }
 
 void add_annotation(Table& table) {
