@@ -307,6 +307,24 @@ TEST(Annotation, NamesWhatOccurs) {
     EXPECT_TRUE(annotation_of(scene, settings).empty());
 }
 
+TEST(Annotation, InfiniteValuesGoOnBeyondTheBar) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    InferredSettings settings;
+    settings.camera.up = "+y";
+    settings.annotation.colorbar = true;
+    for (const float sign : {1.0f, -1.0f}) {
+        MeshData mesh;
+        mesh.V = Array3f(Array3f::Dense::Zero(3, 3));
+        mesh.scalars = {{"t", Array1f(Array1f::Dense{{1.0f}, {3.0f}, {sign * infinite}})}};
+        SceneSnapshot scene;
+        scene.objects.push_back({"m", std::make_shared<const MeshData>(mesh), Eigen::Affine3d::Identity()});
+        const ColorBar bar = annotation_of(scene, settings).bars.at(0);
+        EXPECT_EQ(bar.range.clips_above(), sign > 0);
+        EXPECT_EQ(bar.range.clips_below(), sign < 0);
+        EXPECT_FALSE(bar.nan_color);
+    }
+}
+
 TEST(Font, HasWidthsAndAlphabets) {
     const Font font(20);
     EXPECT_EQ(font.width(""), 0);

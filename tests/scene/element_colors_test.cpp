@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "easypbr/core/error.h"
@@ -226,6 +227,23 @@ TEST(ElementColors, ValuesOfLinesAreMappedAfterInterpolation) {
     EXPECT_NE(of_lines.key, plan(mesh, {}, DrawMode::points).key);
     const Array1f at_vertices = element_colors(mesh, of_lines).values;
     EXPECT_EQ(Eigen::VectorXf(at_vertices), Eigen::VectorXf(values({3, 2, 3, 4})));
+}
+
+TEST(ElementColors, InfiniteValuesAreTheEndsOfTheRange) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    MeshData mesh = strip();
+    mesh.scalars = {{"t", values({1, infinite, no_value, -infinite})}};
+    Style style;
+    style.color_min = 0.0f;
+    style.color_max = 4.0f;
+    const ElementColors onmesh = colors(mesh, style);
+    EXPECT_EQ(onmesh.values(0), 1);
+    EXPECT_EQ(onmesh.values(1), 4);
+    EXPECT_TRUE(std::isnan(onmesh.values(2)));
+    EXPECT_EQ(onmesh.values(3), 0);
+    // Two faces, as points: the mean of both at the corners that they share.
+    mesh.scalars = {{"t", values({infinite, -infinite})}};
+    EXPECT_EQ(colors(mesh, style, DrawMode::points).colors[0], opaque(color_table(Colormap::viridis)[128]));
 }
 
 TEST(ElementColors, ValuesOfFacesAreTheirMeanAtVertices) {

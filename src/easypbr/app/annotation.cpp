@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "easypbr/core/log.h"
@@ -55,6 +56,13 @@ std::vector<LegendEntry> entries_of(const std::set<int32_t>& labels, const Label
     return entries;
 }
 
+/// Infinite values lie beyond any range.
+void count_infinite(const Array1f& values, ValueRange& range) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    if ((values.array() == infinite).any()) range.data_max = infinite;
+    if ((values.array() == -infinite).any()) range.data_min = -infinite;
+}
+
 /// Gathers what the objects of a scene have in common.
 class Collector {
   public:
@@ -96,6 +104,7 @@ class Collector {
         ColorBar bar;
         bar.title = settings_.annotation.title.empty() ? title_of(plan) : settings_.annotation.title;
         bar.range = value_range(values, plan.min, plan.max, plan.colormap == Colormap::coolwarm);
+        count_infinite(values, bar.range);
         std::ranges::transform(color_table(plan.colormap), bar.table.begin(), opaque);
         if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));
         const auto same = [&](const ColorBar& other) {

@@ -64,6 +64,17 @@ Array1f values_of_vertices(const MeshData& mesh, const Array1f& values) {
     return Array1f::Dense((sum.array() / count.array()).cast<float>());  // 0 / 0 is NaN: no value
 }
 
+/// Infinite values as the range's ends: what is interpolated between them is a number, too.
+Array1f bounded(const Array1f& values, const ValueRange& range) {
+    if (!values.array().isInf().any()) return values;
+    Array1f::Dense result(values.rows());
+    parallel_for(size_t(values.rows()), color_grain, [&](size_t i) {
+        const float value = values(Eigen::Index(i));
+        result(Eigen::Index(i)) = !std::isinf(value) ? value : value > 0 ? range.max : range.min;
+    });
+    return result;
+}
+
 std::vector<Rgba8> label_colors(const MeshData& mesh, PerElement element) {
     const bool fits = element_of(mesh, mesh.L.rows()) == element;
     const Array1i labels = fits                          ? mesh.L
@@ -126,6 +137,7 @@ ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan) {
     std::transform(color_table(plan.colormap).begin(), color_table(plan.colormap).end(), result.table.begin(),
                    opaque);
     result.nan_color = opaque(to_rgb8(plan.nan_color));
+    values = bounded(values, result.range);
     if (element_of(mesh, values.rows()) != plan.element) values = values_of_vertices(mesh, values);
     if (plan.source == ColorSource::values) {
         result.values = values;
