@@ -100,6 +100,9 @@ TEST(Ticks, AreRound) {
     EXPECT_EQ(texts(0, 2e-5, 5), (Texts{"0", "0.5e-5", "1.0e-5", "1.5e-5", "2.0e-5"}));
     EXPECT_EQ(texts(-2e6, 1e6, 4), (Texts{"\u22122e6", "\u22121e6", "0", "1e6"}));
     EXPECT_EQ(texts(1000.0001, 1000.0004, 4), (Texts{"1000.0001", "1000.0002", "1000.0003", "1000.0004"}));
+    // Ends as float32 holds them: 1e-4 and 1e38 are less there.
+    EXPECT_EQ(texts(0, double(1e-4f), 3), (Texts{"0", "0.5e-4", "1.0e-4"}));
+    EXPECT_EQ(texts(0, double(1e38f), 2), (Texts{"0", "1e38"}));
     EXPECT_EQ(texts(0.3, 0.4, 1).size(), 1u);
 }
 

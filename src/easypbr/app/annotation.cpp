@@ -151,7 +151,8 @@ std::string tick_text(double value, double step, double magnitude) {
     if (value == 0 && (magnitude >= 1e6 || magnitude < 1e-3)) return "0";
     std::string text;
     if (magnitude >= 1e6 || magnitude < 1e-3) {
-        const double exponent = std::floor(std::log10(magnitude) + 1e-9), power = std::pow(10.0, exponent);
+        // Rounded to float32, 1e-4 is less than it by a part of up to 6e-8.
+        const double exponent = std::floor(std::log10(magnitude) + 1e-6), power = std::pow(10.0, exponent);
         text = fmt::format("{:.{}f}e{}", value / power, digits_of(step / power), int(exponent));
     } else {
         text = fmt::format("{:.{}f}", value, digits_of(step));
