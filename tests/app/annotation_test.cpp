@@ -7,6 +7,7 @@
 #include <set>
 
 #include "easypbr/app/font.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/label_colors.h"
 #include "easypbr/scene/settings.h"
@@ -256,6 +257,44 @@ TEST(Annotation, ManyClassesTakeColumnsAndThenSayHowManyAreMissing) {
     EXPECT_TRUE(places(full, more.entries[3999].color).empty());
     // Nothing hangs over the borders: the margin is as it was.
     for (int y = 0; y < 300; ++y) EXPECT_EQ(pixel(full, 0, y), (Rgb8{64, 64, 64}));
+}
+
+// With work for each pair of entries, or for each number of columns and entry, these would take hours.
+TEST(Annotation, HundredThousandsOfClassesTakeNoLongerThanTheirNumber) {
+    Image picture = plain(PixelType::u8, 800, 300);
+    const Legend many = legend_of(300000);
+    draw_annotation({{many}, {}}, {}, picture);
+    EXPECT_FALSE(places(picture, many.entries[0].color).empty());
+    SceneSnapshot scene;
+    MeshData cloud;
+    cloud.V = Array3f(Array3f::Dense::Zero(300000, 3));
+    cloud.L = Array1i(Array1i::Dense(Eigen::VectorXi::LinSpaced(300000, 0, 299999)));
+    scene.objects.push_back({"m", std::make_shared<const MeshData>(cloud), Eigen::Affine3d::Identity()});
+    InferredSettings settings;
+    settings.camera.up = "+y";
+    settings.annotation.legend = true;
+    EXPECT_EQ(annotation_of(scene, settings).legends.at(0).entries.size(), 300000u);
+    InterruptScope scope([] { return true; });
+    EXPECT_THROW((void)annotation_of(scene, settings), Interrupted);
+}
+
+TEST(Annotation, HowManyAreMissingStandsBehindTheClassesOfASingleRow) {
+    BasicAnnotationSettings<Inferred> settings;
+    settings.text_size = 0.2f;
+    Image picture = plain(PixelType::u8, 1600, 100);
+    const Legend legend = legend_of(100);
+    draw_annotation({{legend}, {}}, settings, picture);
+    int swatch = 0, ink = 0;  // the last columns of pixels of either
+    for (const LegendEntry& entry : legend.entries)
+        if (const auto found = places(picture, entry.color); !found.empty())
+            swatch = std::max(swatch, found.back().x());
+    for (int x = 0; x < picture.width(); ++x)
+        for (int y = 0; y < picture.height(); ++y)
+            if (std::ranges::min(pixel(picture, x, y)) > 150) ink = x;
+    ASSERT_GT(swatch, 0);
+    const Font font(20);
+    // Glyphs begin within the width that they take, and end in it: a tenth is enough for their bearings.
+    EXPECT_GT(float(ink - swatch), font.width("class 9") + 0.9f * font.width("+ 90 more"));
 }
 
 TEST(Annotation, FitsIntoNoPictureWithoutHarm) {

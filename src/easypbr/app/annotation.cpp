@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/draw_style.h"
@@ -41,8 +42,10 @@ LegendEntry unlabelled_entry(const LabelMap& map) {
 
 std::vector<LegendEntry> entries_of(const std::set<int32_t>& labels, const LabelMap* map) {
     std::vector<LegendEntry> entries;
-    const auto add = [&](const LegendEntry& entry) {
-        if (std::ranges::find(entries, entry) == entries.end()) entries.push_back(entry);
+    std::set<std::pair<std::string, Rgb8>> known;
+    const auto add = [&](LegendEntry entry) {
+        check_interrupt(known.size());
+        if (known.emplace(entry.name, entry.color).second) entries.push_back(std::move(entry));
     };
     const GeneratedColors generated(map || labels.empty() ? 0 : *labels.rbegin());
     for (const int32_t label : labels) {

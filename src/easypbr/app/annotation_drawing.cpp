@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "easypbr/app/annotation.h"
 #include "easypbr/app/font.h"
@@ -66,58 +67,72 @@ Block titled(Pen& pen, const std::string& title, Block block) {
             }};
 }
 
-/// Columns of swatches with names.
+/// Columns of swatches with names. Of entries that cannot fit no name is measured.
 class LegendLayout {
   public:
     LegendLayout(Pen& pen, const Legend& legend, int room_x, int room_y)
         : row_(pen.px(row_height)),
           swatch_(pen.px(swatch_size)),
           text_x_(swatch_ + pen.px(swatch_gap)),
-          column_gap_(pen.px(column_gap)),
-          entries_(legend.entries) {
-        const int most_rows = std::max(1, (room_y - (legend.title.empty() ? 0 : row_)) / row_);
-        int columns = (int(entries_.size()) + most_rows - 1) / most_rows;
-        for (set_columns(pen, columns); columns > 1 && width() > room_x; set_columns(pen, columns)) --columns;
-        if (rows_ <= most_rows) return;
+          column_gap_(pen.px(column_gap)) {
+        const int title = legend.title.empty() ? 0 : row_;
+        const size_t most_rows = size_t(std::max(1, (room_y - title) / row_));
+        const size_t most_columns = size_t(std::max(1, (room_x + column_gap_) / (text_x_ + column_gap_)));
+        const size_t count = legend.entries.size();
+        const size_t needed = std::max<size_t>(1, (count + most_rows - 1) / most_rows);
+        take(pen, legend, std::min(count, most_rows * most_columns));
+        if (needed <= most_columns) {
+            place((count + needed - 1) / needed);
+            if (needed == 1 || width() <= room_x) return;
+        }
         // They do not fit: the last row says so.
-        const size_t most = size_t(columns) * size_t(most_rows);
-        rest_ = fmt::format("+ {} more", entries_.size() - (most - 1));
-        entries_.resize(most - 1);
-        rows_ = most_rows;
-        measure(pen);
+        for (size_t columns = std::min(needed - 1, most_columns);; --columns) {
+            shown_.resize(columns * most_rows - 1);
+            rest_ = fmt::format("+ {} more", count - shown_.size());
+            rest_width_ = pen.width(rest_);
+            place(most_rows);
+            if (columns == 1 || width() <= room_x) return;
+        }
     }
 
     int width() const { return x_.back() - column_gap_; }
-    int height() const { return rows_ * row_; }
+    int height() const { return int(rows_) * row_; }
 
     void draw(Pen& pen, int x, int y) const {
-        for (size_t i = 0; i < entries_.size(); ++i) {
-            const int at_x = x + x_[i / size_t(rows_)], at_y = y + int(i % size_t(rows_)) * row_;
-            pen.canvas().fill({at_x, at_y + (row_ - swatch_) / 2, swatch_, swatch_}, entries_[i].color);
-            pen.write(entries_[i].name, at_x + text_x_, at_y, row_);
+        for (size_t i = 0; i < shown_.size(); ++i) {
+            const int at_x = x + x_[i / rows_], at_y = y + int(i % rows_) * row_;
+            pen.canvas().fill({at_x, at_y + (row_ - swatch_) / 2, swatch_, swatch_}, shown_[i].color);
+            pen.write(shown_[i].name, at_x + text_x_, at_y, row_);
         }
-        if (!rest_.empty()) pen.write(rest_, x + x_[x_.size() - 2], y + (rows_ - 1) * row_, row_);
+        if (!rest_.empty()) pen.write(rest_, x + x_[x_.size() - 2], y + int(rows_ - 1) * row_, row_);
     }
 
   private:
-    void set_columns(const Pen& pen, int columns) {
-        rows_ = std::max(1, (int(entries_.size()) + columns - 1) / std::max(1, columns));
-        measure(pen);
+    struct Shown : LegendEntry {
+        int width;  ///< of the name
+    };
+
+    void take(const Pen& pen, const Legend& legend, size_t count) {
+        for (const LegendEntry& entry : std::span(legend.entries).first(count))
+            shown_.push_back({entry, pen.width(entry.name)});
     }
 
-    /// Where each column begins, and where the next one would.
-    void measure(const Pen& pen) {
+    /// Columns of some rows: where each begins, and where the next one would.
+    void place(size_t rows) {
+        rows_ = std::max<size_t>(1, rows);
+        const size_t count = shown_.size() + (rest_.empty() ? 0 : 1);
         x_ = {0};
-        for (size_t first = 0; first < entries_.size() || x_.size() == 1; first += size_t(rows_)) {
-            int widest = pen.width(rest_);
-            for (size_t i = first; i < std::min(entries_.size(), first + size_t(rows_)); ++i)
-                widest = std::max(widest, text_x_ + pen.width(entries_[i].name));
+        for (size_t first = 0; first < count || x_.size() == 1; first += rows_) {
+            int widest = first + rows_ >= count ? rest_width_ : 0;
+            for (size_t i = first; i < std::min(shown_.size(), first + rows_); ++i)
+                widest = std::max(widest, text_x_ + shown_[i].width);
             x_.push_back(x_.back() + widest + column_gap_);
         }
     }
 
-    int row_, swatch_, text_x_, column_gap_, rows_ = 1;
-    std::vector<LegendEntry> entries_;
+    int row_, swatch_, text_x_, column_gap_, rest_width_ = 0;
+    size_t rows_ = 1;
+    std::vector<Shown> shown_;
     std::string rest_;
     std::vector<int> x_;
 };
