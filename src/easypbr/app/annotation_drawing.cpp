@@ -37,6 +37,20 @@ class Pen {
     int px(float length) const { return int(std::lround(length * em_)); }
     int width(const std::string& text) const { return int(std::ceil(font_.width(text))); }
 
+    /// The text, or the longest beginning that is no wider than the room together with an ellipsis; nothing
+    /// if not even that fits.
+    std::string shortened(const std::string& text, int room) const {
+        if (width(text) <= room) return text;
+        std::string fits;
+        for (size_t end = 0; end < text.size(); ++end) {
+            if ((uint8_t(text[end]) & 0xc0) == 0x80) continue;  // within a character of UTF-8
+            const std::string next = text.substr(0, end) + "\u2026";
+            if (width(next) > room) break;
+            fits = next;
+        }
+        return fits;
+    }
+
     /// Text whose capitals are centred on the row from `y` on, `height` pixels high.
     void write(const std::string& text, int x, int y, int height) {
         const int baseline = y + int(std::lround((float(height) + font_.cap_height()) / 2));
@@ -57,8 +71,9 @@ struct Block {
     std::function<void(Pen&, int x, int y)> draw;
 };
 
-Block titled(Pen& pen, const std::string& title, Block block) {
-    if (title.empty()) return block;
+Block titled(Pen& pen, const std::string& text, int room_x, Block block) {
+    if (text.empty()) return block;
+    const std::string title = pen.shortened(text, std::max(room_x, block.width));
     const int row = pen.px(row_height);
     return {std::max(block.width, pen.width(title)), block.height + row,
             [title, row, inner = block.draw](Pen& p, int x, int y) {
@@ -67,7 +82,8 @@ Block titled(Pen& pen, const std::string& title, Block block) {
             }};
 }
 
-/// Columns of swatches with names. Of entries that cannot fit no name is measured.
+/// Columns of swatches with names, which are shortened where one column would be too wide. Of entries that
+/// cannot fit no name is measured.
 class LegendLayout {
   public:
     LegendLayout(Pen& pen, const Legend& legend, int room_x, int room_y)
@@ -80,7 +96,7 @@ class LegendLayout {
         const size_t most_columns = size_t(std::max(1, (room_x + column_gap_) / (text_x_ + column_gap_)));
         const size_t count = legend.entries.size();
         const size_t needed = std::max<size_t>(1, (count + most_rows - 1) / most_rows);
-        take(pen, legend, std::min(count, most_rows * most_columns));
+        take(pen, legend, std::min(count, most_rows * most_columns), room_x - text_x_);
         if (needed <= most_columns) {
             place((count + needed - 1) / needed);
             if (needed == 1 || width() <= room_x) return;
@@ -88,7 +104,7 @@ class LegendLayout {
         // They do not fit: the last row says so.
         for (size_t columns = std::min(needed - 1, most_columns);; --columns) {
             shown_.resize(columns * most_rows - 1);
-            rest_ = fmt::format("+ {} more", count - shown_.size());
+            rest_ = pen.shortened(fmt::format("+ {} more", count - shown_.size()), room_x);
             rest_width_ = pen.width(rest_);
             place(most_rows);
             if (columns == 1 || width() <= room_x) return;
@@ -112,9 +128,11 @@ class LegendLayout {
         int width;  ///< of the name
     };
 
-    void take(const Pen& pen, const Legend& legend, size_t count) {
-        for (const LegendEntry& entry : std::span(legend.entries).first(count))
-            shown_.push_back({entry, pen.width(entry.name)});
+    void take(const Pen& pen, const Legend& legend, size_t count, int room) {
+        for (const LegendEntry& entry : std::span(legend.entries).first(count)) {
+            const std::string name = pen.shortened(entry.name, room);
+            shown_.push_back({{name, entry.color}, pen.width(name)});
+        }
     }
 
     /// Columns of some rows: where each begins, and where the next one would.
@@ -139,9 +157,9 @@ class LegendLayout {
 
 Block legend_block(Pen& pen, const Legend& legend, int room_x, int room_y) {
     const LegendLayout layout(pen, legend, room_x, room_y);
-    return titled(pen, legend.title, {layout.width(), layout.height(), [layout](Pen& p, int x, int y) {
-                                          layout.draw(p, x, y);
-                                      }});
+    return titled(
+        pen, legend.title, room_x,
+        {layout.width(), layout.height(), [layout](Pen& p, int x, int y) { layout.draw(p, x, y); }});
 }
 
 Rgb8 rgb(const Rgba8& color) {
@@ -187,7 +205,7 @@ void draw_bar(Pen& pen, const ColorBar& bar, const BarLayout& layout, int x, int
     }
 }
 
-Block bar_block(Pen& pen, const ColorBar& bar, int room_y) {
+Block bar_block(Pen& pen, const ColorBar& bar, int room_x, int room_y) {
     const int row = pen.px(row_height), half_row = row / 2;
     BarLayout layout;
     layout.bar = pen.px(bar_width);
@@ -216,7 +234,7 @@ Block bar_block(Pen& pen, const ColorBar& bar, int room_y) {
                         rgb(*bar.nan_color));
         p.write(missing, x + layout.text_x, y + nan_y, row);
     };
-    return titled(pen, bar.title, {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), draw});
+    return titled(pen, bar.title, room_x, {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), draw});
 }
 
 bool at_right(Corner corner) {
@@ -251,9 +269,9 @@ void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings
         draw_block(pen, block, {x, y, width, height});
         used += width + pen.px(gap);
     };
-    for (const Legend& legend : annotation.legends)
-        place(legend_block(pen, legend, picture.width() - used - border - 2 * pad, room_y));
-    for (const ColorBar& bar : annotation.bars) place(bar_block(pen, bar, room_y));
+    const auto room_x = [&] { return picture.width() - used - border - 2 * pad; };
+    for (const Legend& legend : annotation.legends) place(legend_block(pen, legend, room_x(), room_y));
+    for (const ColorBar& bar : annotation.bars) place(bar_block(pen, bar, room_x(), room_y));
 }
 
 }  // namespace easypbr::app
