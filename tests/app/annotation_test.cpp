@@ -105,6 +105,9 @@ TEST(Ticks, AreRound) {
     EXPECT_EQ(texts(0, double(1e-4f), 3), (Texts{"0", "0.5e-4", "1.0e-4"}));
     EXPECT_EQ(texts(0, double(1e38f), 2), (Texts{"0", "1e38"}));
     EXPECT_EQ(texts(0.3, 0.4, 1).size(), 1u);
+    // Of the distance 5 there is none, of the next one, 2, the last ones that may be.
+    EXPECT_EQ(texts(0.5, 4.52, 2), (Texts{"2", "4"}));
+    EXPECT_EQ(texts(0.5, 4.52, 1), (Texts{"4"}));
 }
 
 TEST(Ticks, AreInTheRangeAndNotTooMany) {
@@ -115,6 +118,7 @@ TEST(Ticks, AreInTheRangeAndNotTooMany) {
             for (int most : {2, 3, 7}) {
                 const auto ticks = ticks_of(min, max, most);
                 EXPECT_LE(int(ticks.size()), most);
+                EXPECT_GE(int(ticks.size()), 1) << min << " " << max;
                 for (const Tick& tick : ticks) {
                     EXPECT_GE(tick.value, min - 1e-5 * (max - min));
                     EXPECT_LE(tick.value, max + 1e-5 * (max - min));
@@ -332,6 +336,31 @@ TEST(Annotation, FitsIntoNoPictureWithoutHarm) {
         Image picture = plain(PixelType::u8, width, height);
         EXPECT_NO_THROW(draw_annotation(annotation, {}, picture));
     }
+}
+
+// Rows of text are 1.4 times its size high: two ticks take a bar of two rows.
+TEST(Annotation, BarsFitIntoFlatPicturesAndBesideLargeText) {
+    ColorBar bar = bar_of(Colormap::viridis, {0, 1, 0, 1});
+    bar.nan_color = Rgba8{255, 0, 255, 255};
+    BasicAnnotationSettings<Inferred> large;
+    large.text_size = 0.2f;
+    Image picture = plain(PixelType::u8, 320, 240);
+    draw_annotation({{}, {bar}}, large, picture);
+    // Margins and padding take 2.8 sizes, the ends a row, title and missing values one each: with two rows of
+    // the bar 9.8 sizes of 240 / 9.8 pixels. Seven lengths are rounded to pixels.
+    EXPECT_NEAR(find_bar(picture, bar).height, 2 * 1.4 * 240 / 9.8, 4);
+    EXPECT_FALSE(places(picture, {255, 0, 255}).empty());
+    // The smallest text has 7 pixels: of 40 pixels margins and padding leave 20, which are two rows of 10.
+    Image flat = plain(PixelType::u8, 200, 40);
+    draw_annotation({{}, {bar}}, {}, flat);
+    EXPECT_EQ(find_bar(flat, bar).height, 10);
+    EXPECT_TRUE(places(flat, {255, 0, 255}).empty());
+    // One tick: its line is where the bar's right edge has ink.
+    std::set<int> lines;
+    const int right = find_bar(flat, bar).x + 8;  // the bar is 1.1 times 7 pixels wide
+    for (int y = 0; y < 40; ++y)
+        if (std::ranges::min(pixel(flat, right, y)) > 200) lines.insert(y);
+    EXPECT_EQ(lines.size(), 1u);
 }
 
 TEST(Annotation, ArrowsSayThatValuesGoOn) {

@@ -172,9 +172,11 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
     const auto first = [&] { return std::ceil(min / step - 1e-6); };
     const auto last = [&] { return std::floor(max / step + 1e-6); };
     while (last() - first() + 1 > most) step = round_step(step * 1.5);
+    // None: the next finer distance.
+    while (last() < first()) step = round_step(step * 0.4);
     const double magnitude = std::max(std::abs(min), std::abs(max));
     std::vector<Tick> ticks;
-    for (double k = first(); k <= last(); ++k)
+    for (double k = std::max(first(), last() - most + 1); k <= last(); ++k)
         ticks.push_back({k * step, tick_text(k == 0 ? 0 : k * step, step, magnitude)});  // no negative zero
     return ticks;
 }

@@ -51,8 +51,8 @@ struct Tick {
     double value = 0;
     std::string text;  ///< with as many digits as the distance to the next one needs
 };
-/// Values from `min` to `max` (larger) at a round distance: 1, 2 or 5 times a power of ten, at most `most` of
-/// them.
+/// Values from `min` to `max` (larger) at a round distance: 1, 2 or 5 times a power of ten, at least
+/// one, at most `most` of them.
 std::vector<Tick> ticks_of(double min, double max, int most);
 
 }  // namespace easypbr::app

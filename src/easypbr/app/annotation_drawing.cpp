@@ -205,8 +205,36 @@ void draw_bar(Pen& pen, const ColorBar& bar, const BarLayout& layout, int x, int
     }
 }
 
-Block bar_block(Pen& pen, const ColorBar& bar, int room_x, int room_y) {
+/// Rows of a bar that two ticks take.
+constexpr int least_rows = 2;
+
+/// Height of a picture in which all of a bar fits, in units of the text's size.
+float least_height(const ColorBar& bar) {
+    // The ends take half a row each, or an arrow, which is as long.
+    const int rows = least_rows + 1 + (bar.title.empty() ? 0 : 1) + (bar.nan_color ? 1 : 0);
+    return 2 * (margin + padding) + float(rows) * row_height;
+}
+
+/// What does not fit above or below the bar is left out: its title, then the swatch of missing values.
+ColorBar fitting(ColorBar bar, int room_y, int row) {
+    const auto fits = [&] {
+        const int others = 1 + (bar.title.empty() ? 0 : 1) + (bar.nan_color ? 1 : 0);
+        return room_y >= (others + 1) * row;
+    };
+    if (!fits()) bar.title.clear();
+    if (!fits()) bar.nan_color.reset();
+    return bar;
+}
+
+std::vector<Tick> ticks_within(const ValueRange& range, int height, int row) {
+    std::vector<Tick> ticks = ticks_of(range.min, range.max, std::max(2, height / (2 * row)));
+    if (height < least_rows * row && ticks.size() > 1) ticks.erase(ticks.begin(), ticks.end() - 1);
+    return ticks;
+}
+
+Block bar_block(Pen& pen, const ColorBar& given, int room_x, int room_y) {
     const int row = pen.px(row_height), half_row = row / 2;
+    const ColorBar bar = fitting(given, room_y, row);
     BarLayout layout;
     layout.bar = pen.px(bar_width);
     layout.arrow = pen.px(arrow_height);
@@ -217,7 +245,7 @@ Block bar_block(Pen& pen, const ColorBar& bar, int room_x, int room_y) {
     const int below = bar.range.clips_below() ? std::max(layout.arrow, half_row) : half_row;
     const int others = layout.top + below + (bar.nan_color ? row : 0) + (bar.title.empty() ? 0 : row);
     layout.height = std::max(2, std::min(pen.px(longest_bar), room_y - others));
-    layout.ticks = ticks_of(bar.range.min, bar.range.max, std::max(2, layout.height / (2 * row)));
+    layout.ticks = ticks_within(bar.range, layout.height, row);
     int widest = 0;
     for (const Tick& tick : layout.ticks) widest = std::max(widest, pen.width(tick.text));
     const std::string missing = "no value";
@@ -258,7 +286,10 @@ void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings
                      Image& picture) {
     if (annotation.empty()) return;
     Canvas canvas(picture);
-    Pen pen(canvas, std::max(smallest_text, settings.text_size * float(picture.height())));
+    const float height = float(picture.height());
+    float em = settings.text_size * height;
+    for (const ColorBar& bar : annotation.bars) em = std::min(em, height / least_height(bar));
+    Pen pen(canvas, std::max(smallest_text, em));
     const int border = pen.px(margin), pad = pen.px(padding);
     const int room_y = picture.height() - 2 * (border + pad);
     int used = border;  // of the picture's width, from the corner inwards
