@@ -5,22 +5,16 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
+#include "easypbr/app/face_depth.h"
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::dataset {
 namespace {
 
-/// How far the hit of the drawn pixel's ray may lie from the drawn depth, as a part of it: beyond, the face
-/// is seen edge-on or the pixel only touches it.
-constexpr double relative_depth_tolerance = 0.01;
+using app::DrawnPixel, app::PixelRay;
 
-struct Ray {
-    Vec3d origin, direction;  ///< direction.z is 1: the parameter is the depth
-};
-
-Ray ray_of(const Surfaces& s, size_t pixel) {
+PixelRay ray_of(const Surfaces& s, size_t pixel) {
     const Vec2d slope = s.slopes[pixel].cast<double>();
     if (s.camera.projection == Projection::orthographic)
         return {Vec3d(slope.x(), slope.y(), 0), Vec3d::UnitZ()};
@@ -47,45 +41,26 @@ Vec3 inside(const Vec3d& weights) {
     return sum > 0 ? Vec3((positive / sum).cast<float>()) : Vec3(Vec3::Constant(1.0f / 3));
 }
 
-/// What was drawn at a pixel: through a lens the nearest drawn pixel's ray is another one.
-struct DrawnPixel {
-    double depth;
-    std::optional<Ray> ray;
-};
-
 DrawnPixel drawn_pixel(const app::LensMap& lens, size_t drawn, double depth) {
     if (lens.is_identity()) return {depth, std::nullopt};
     const Vec2d slope = lens.drawn_slope(drawn);
-    return {depth, Ray{Vec3d::Zero(), {slope.x(), slope.y(), 1}}};
+    return {depth, PixelRay{Vec3d::Zero(), {slope.x(), slope.y(), 1}}};
 }
 
 void meet_face(Surfaces& s, size_t pixel, const Eigen::Affine3d& T_cv_mesh, const DrawnPixel& drawn) {
     const MeshData& mesh = s.mesh_of(pixel);
     const int32_t* f = mesh.F.data() + 3 * s.element_of(pixel);
-    Vec3d corner[3];
-    for (int k = 0; k < 3; ++k) corner[k] = T_cv_mesh * Vec3(mesh.V.row(f[k])).cast<double>();
-    const Ray ray = ray_of(s, pixel);
+    std::array<Vec3d, 3> corner;
+    for (size_t k = 0; k < 3; ++k) corner[k] = T_cv_mesh * Vec3(mesh.V.row(f[k])).cast<double>();
+    const PixelRay ray = ray_of(s, pixel);
+    const double depth = app::depth_on_face(corner, ray, drawn);
     const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    const auto depth_along = [&](const Ray& r) {
-        const double slant = normal.dot(r.direction);
-        return slant != 0 ? normal.dot(corner[0] - r.origin) / slant : drawn.depth;
-    };
-    const double tolerance = relative_depth_tolerance * drawn.depth;
-    double depth = depth_along(drawn.ray.value_or(ray));
-    if (!(std::abs(depth - drawn.depth) <= tolerance)) {
-        depth = drawn.depth;
-    } else if (drawn.ray) {
-        // Beside a face that is seen edge-on its plane is somewhere else.
-        const auto [nearest, farthest] = std::minmax({corner[0].z(), corner[1].z(), corner[2].z()});
-        depth = depth_along(ray);
-        if (!(depth >= nearest - tolerance && depth <= farthest + tolerance)) depth = drawn.depth;
-    }
     const Vec3d point = ray.origin + depth * ray.direction;
     const double area = normal.squaredNorm();
     Vec3d weights = Vec3d::Constant(1.0 / 3);
     if (area > 0)
-        for (int k = 0; k < 3; ++k)
-            weights[k] =
+        for (size_t k = 0; k < 3; ++k)
+            weights[Eigen::Index(k)] =
                 normal.dot((corner[(k + 2) % 3] - corner[(k + 1) % 3]).cross(point - corner[(k + 1) % 3])) /
                 area;
     s.position[pixel] = point.cast<float>();
@@ -188,7 +163,7 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
         if (!s.covered(i)) return;
         const double depth = frame.depth[drawn];
         if (s.on_face(i)) return meet_face(s, i, T_cv_mesh[s.object[i] - 1], drawn_pixel(lens, drawn, depth));
-        const Ray ray = ray_of(s, i);
+        const PixelRay ray = ray_of(s, i);
         s.position[i] = Vec3d(ray.origin + depth * ray.direction).cast<float>();
     });
     return s;

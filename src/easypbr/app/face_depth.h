@@ -1,0 +1,26 @@
+// How deep a pixel sees a face, in double precision: without the rasteriser's rounding, through a lens too.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "easypbr/core/math.h"
+
+namespace easypbr::app {
+
+/// In the camera's frame, OpenCV's axes.
+struct PixelRay {
+    Vec3d origin, direction;  ///< direction.z is 1: the parameter is the depth
+};
+
+/// What was drawn at a pixel: through a lens the nearest drawn pixel's ray is another one than the pixel's.
+struct DrawnPixel {
+    double depth;
+    std::optional<PixelRay> ray;
+};
+
+/// The depth at which a pixel's ray meets the plane of a face, whose corners are in the camera's frame; the
+/// drawn depth where the face is seen edge-on or the pixel only touches it.
+double depth_on_face(const std::array<Vec3d, 3>& corner, const PixelRay& ray, const DrawnPixel& drawn);
+
+}  // namespace easypbr::app
