@@ -185,6 +185,33 @@ TEST(Pick, FindsPositionsThroughTheLens) {
     EXPECT_EQ(picked, 4);
 }
 
+// Faces turned away from the camera: the depth of the nearest drawn pixel is not that of the pixel's own ray.
+TEST(Pick, FindsPositionsOnSlantedFacesThroughTheLens) {
+    Session session = ball_session();
+    distort(session);
+    const Mesh ball = session.scene().get("ball");
+    const Camera camera = session.camera();
+    const PickBuffer buffer = session.pick_buffer(Vec2i(64, 48));
+    int slanted = 0;
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const Vec2d centre(x + 0.5, y + 0.5);
+            const std::optional<Pick> pick = buffer.at(centre);
+            if (!pick) continue;
+            Vec3d corner[3];
+            for (int k = 0; k < 3; ++k)
+                corner[k] = Vec3(ball.V().row(ball.F()(pick->element, k))).cast<double>();
+            const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+            const double cosine = normal.dot((camera.position() - pick->position).normalized());
+            // Flatter ones may be met further beyond their edges than the depth's tolerance, 1 %.
+            if (cosine < 0.75 || cosine > 0.95) continue;
+            ++slanted;
+            EXPECT_NEAR(normal.dot(pick->position - corner[0]), 0, 1e-9) << "computed in double precision";
+            EXPECT_LT((pixel_of(camera, pick->position, Vec2i(64, 48)).head<2>() - centre).norm(), 1e-6);
+        }
+    EXPECT_GT(slanted, 100);
+}
+
 TEST(Pick, NamesPartsAndPoints) {
     Session session;
     Mesh quad = make_plane(2);

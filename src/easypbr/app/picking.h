@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "easypbr/app/face_depth.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/picture.h"
 #include "easypbr/render/pipeline/surface_frame.h"
@@ -24,6 +25,11 @@ class PickBuffer {
     Vec2i size() const { return lens_->is_identity() ? frame_.size : lens_->size; }
 
   private:
+    /// Of what is drawn at a pixel, where the ray through the centre of the picture's pixel meets it.
+    double depth_at(Vec2d centre, size_t drawn) const;
+    /// Through a lens the ray of the drawn pixel, which is another one.
+    std::optional<PixelRay> ray_of_drawn(size_t drawn) const;
+
     render::SurfaceFrame frame_;
     Camera camera_;
     std::shared_ptr<const LensMap> lens_;
