@@ -80,7 +80,15 @@ TEST(Decimate, LeavesOutWhatBelongsToFaces) {
     plane.L = Array1i(Array1i::Dense::Ones(plane.F.rows()));
     plane.scalars = {{"of faces", Array1f(Array1f::Dense::Ones(plane.F.rows()))},
                      {"of vertices", Array1f(Array1f::Dense(plane.V.col(0)))}};
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view text) { warnings.emplace_back(text); });
     const auto simple = decimate(Mesh(plane), {100, {}}).snapshot();
+    plane.L = {};
+    plane.scalars.erase(plane.scalars.begin());
+    (void)decimate(Mesh(plane), {100, {}});
+    set_log_sink(nullptr);
+    ASSERT_EQ(warnings.size(), 1u) << "nothing is lost of the second one";
+    EXPECT_NE(warnings[0].find("labels, scalars 'of faces' belong to its faces"), std::string::npos);
     EXPECT_TRUE(simple->L.empty());
     ASSERT_EQ(simple->scalars.size(), 1u);
     EXPECT_EQ(simple->scalars[0].values, simple->V.col(0));

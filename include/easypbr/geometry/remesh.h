@@ -40,9 +40,9 @@ struct DecimateOptions {
 /// vertices that are left keep their place and all that they have; borders and seams of texture coordinates
 /// stay closed. Parts are simplified each by itself, with borders that do not move, so that no crack opens
 /// between them. It may stop early where the shape allows no more. Edges, and labels and scalars of faces,
-/// are left out. A mesh whose faces do not share vertices cannot be simplified: weld it with
-/// remove_duplicate_vertices() first. Throws ArgumentError when there are no faces, nothing is given, faces <
-/// 0 or error is not >= 0.
+/// are left out, the latter with a warning. A mesh whose faces do not share vertices cannot be simplified:
+/// weld it with remove_duplicate_vertices() first. Throws ArgumentError when there are no faces, nothing is
+/// given, faces < 0 or error is not >= 0.
 Mesh decimate(const Mesh& mesh, const DecimateOptions& options);
 
 }  // namespace easypbr

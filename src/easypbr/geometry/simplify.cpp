@@ -1,11 +1,14 @@
 #include "easypbr/geometry/remesh.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/awaited.h"
 #include "easypbr/geometry/gather.h"
@@ -37,6 +40,26 @@ std::vector<unsigned int> simplified(const std::shared_ptr<const MeshData>& mesh
         result.resize(count);
         return result;
     });
+}
+
+/// No face that is left is one of those that were.
+void leave_out_values_of_faces(const MeshData& mesh, MeshData& simple) {
+    const auto of_faces = [&](Eigen::Index rows) {
+        return rows > 0 && element_of(mesh, rows) == PerElement::face;
+    };
+    std::vector<std::string> names;
+    if (of_faces(mesh.L.rows())) {
+        simple.L = {};
+        names.emplace_back("labels");
+    }
+    std::erase_if(simple.scalars, [&](const ScalarArray& scalar) {
+        const bool left_out = of_faces(scalar.values.rows());
+        if (left_out) names.push_back("scalars '" + scalar.name + "'");
+        return left_out;
+    });
+    if (!names.empty())
+        log_warning(fmt::format("mesh '{}': {} belong to its faces, which decimate() replaces: left out",
+                                mesh.name, fmt::join(names, ", ")));
 }
 
 }  // namespace
@@ -73,10 +96,7 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
     simple.parts = std::move(parts);
     simple.E = {};
     simple.source_face = {};
-    if (element_of(*data, data->L.rows()) == PerElement::face) simple.L = {};
-    std::erase_if(simple.scalars, [&](const ScalarArray& scalar) {
-        return element_of(*data, scalar.values.rows()) == PerElement::face;
-    });
+    leave_out_values_of_faces(*data, simple);
     geometry::Selection selection = geometry::select_all(simple);
     geometry::drop_unreferenced(selection, simple);
     return Mesh(geometry::chosen(simple, selection));
