@@ -32,6 +32,22 @@ def test_info_counts_a_mesh(easypbr, box):
     assert "faces       12\n" in easypbr("info", box).stdout
 
 
+def test_info_names_scalars(easypbr, tmp_path):
+    """As --style scalar=NAME takes them; quarters are exact in float32 and in text."""
+    (tmp_path / "a.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float heat\nelement face 2\nproperty list uchar int vertex_indices\nproperty float area\nend_header\n"
+        "0 0 0 -1.5\n1 0 0 nan\n1 1 0 2.25\n0 1 0 inf\n3 0 1 2 0.5\n3 0 2 3 nan\n"
+    )
+    info = json.loads(easypbr("info", "--json", "a.ply").stdout)
+    assert info["scalars"] == [{"name": "area", "of": "faces", "min": 0.5, "max": 0.5},
+                               {"name": "heat", "of": "vertices", "min": -1.5, "max": 2.25}]
+    text = easypbr("info", "a.ply").stdout
+    assert "scalar      'area' of faces: 0.5 to 0.5\n" in text and "scalar      'heat' of vertices: -1.5 to 2.25\n" in text
+    (tmp_path / "b.ply").write_text((tmp_path / "a.ply").read_text().replace("0.5", "nan"))
+    assert "scalar      'area' of faces: no values\n" in easypbr("info", "b.ply").stdout
+
+
 def test_info_shows_places_far_from_zero(easypbr, tmp_path):
     (tmp_path / "far.xyz").write_text("691000.125 5335000.5 520.25\n691100.375 5335100.75 530.5\n")
     text = easypbr("info", "far.xyz").stdout

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include <nlohmann/json.hpp>
 #include <set>
@@ -83,6 +85,40 @@ Json describe(const Material& material) {
     return json;
 }
 
+/// Extent of the finite values; empty (min > max) where there are none.
+struct Extent {
+    float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
+
+    void add(const Array1f& values) {
+        for (Eigen::Index i = 0; i < values.rows(); ++i) {
+            if (!std::isfinite(values(i))) continue;
+            min = std::min(min, values(i));
+            max = std::max(max, values(i));
+        }
+    }
+};
+
+/// Scalars by their name and what they belong to: nodes may have some of the same.
+using ScalarExtents = std::map<std::pair<std::string, std::string>, Extent>;
+
+void add_scalars(const MeshData& data, ScalarExtents& scalars) {
+    for (const ScalarArray& scalar : data.scalars) {
+        if (scalar.values.empty()) continue;
+        const bool of_vertices = element_of(data, scalar.values.rows()) == PerElement::vertex;
+        scalars[{scalar.name, of_vertices ? "vertices" : "faces"}].add(scalar.values);
+    }
+}
+
+Json describe(const ScalarExtents& scalars) {
+    Json json = Json::array();
+    for (const auto& [scalar, extent] : scalars) {
+        Json entry{{"name", scalar.first}, {"of", scalar.second}};
+        if (extent.min <= extent.max) entry.update({{"min", extent.min}, {"max", extent.max}});
+        json.push_back(std::move(entry));
+    }
+    return json;
+}
+
 /// Sums over all nodes of a file.
 struct Summary {
     Eigen::Index vertices = 0, faces = 0;
@@ -90,6 +126,7 @@ struct Summary {
     Box3d bounds;
     std::set<std::string> attributes;
     std::map<std::string, Json> materials;
+    ScalarExtents scalars;
 
     void add(const MeshData& data, const Eigen::Affine3d& T_world_mesh) {
         ++nodes;
@@ -99,6 +136,7 @@ struct Summary {
         for (Eigen::Index i = 0; i < data.V.rows(); ++i)
             bounds.extend(T_world_mesh * Vec3d(data.V.row(i).transpose().cast<double>() + data.offset));
         for (const std::string& name : attributes_of(data)) attributes.insert(name);
+        add_scalars(data, scalars);
         for (const Material& material : data.materials) {
             Json entry = describe(material);
             const std::string key = entry.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -131,6 +169,7 @@ Json describe(const io::LoadedScene& loaded) {
     for (const auto& entry : sum.materials) materials.push_back(entry.second);
     Json json{{"vertices", sum.vertices}, {"faces", sum.faces},     {"nodes", sum.nodes},
               {"parts", sum.parts},       {"materials", materials}, {"attributes", sum.attributes}};
+    json["scalars"] = describe(sum.scalars);
     if (!sum.bounds.isEmpty())
         json["bounds"] = {{"min", describe(sum.bounds.min())}, {"max", describe(sum.bounds.max())}};
     json["lights"] = loaded.lights.size();
@@ -169,6 +208,17 @@ std::string box_text(const Json& low, const Json& high) {
     return corner(low) + " to " + corner(high);
 }
 
+void print_scalars(const Json& scalars) {
+    for (const Json& scalar : scalars) {
+        const std::string range =
+            scalar.contains("min")
+                ? fmt::format("{:.6g} to {:.6g}", scalar["min"].get<double>(), scalar["max"].get<double>())
+                : "no values";
+        fmt::print("{:<12}'{}' of {}: {}\n", "scalar", scalar["name"].get<std::string>(),
+                   scalar["of"].get<std::string>(), range);
+    }
+}
+
 void print_mesh(const Json& mesh) {
     for (const char* count : {"vertices", "faces", "nodes", "parts"})
         fmt::print("{:<12}{}\n", count, mesh[count].get<size_t>());
@@ -182,6 +232,7 @@ void print_mesh(const Json& mesh) {
     const auto attributes = mesh["attributes"].get<std::vector<std::string>>();
     fmt::print("{:<12}{}\n", "attributes",
                attributes.empty() ? "none" : fmt::format("{}", fmt::join(attributes, ", ")));
+    print_scalars(mesh["scalars"]);
     if (const auto variants = mesh["variants"].get<std::vector<std::string>>(); !variants.empty())
         fmt::print("{:<12}{}\n", "variants", fmt::join(variants, ", "));
     if (mesh.contains("bounds"))
