@@ -135,10 +135,37 @@ TEST(Motion, TurnsEvenlyTheShorterWay) {
     EXPECT_LT((between(a, b, 0.25).matrix() - expected.matrix()).norm(), 1e-12);
     EXPECT_LT((between(a, b, 0).matrix() - a.matrix()).norm(), 1e-12);
     EXPECT_LT((between(a, b, 1).matrix() - b.matrix()).norm(), 1e-12);
-    // A mirror stays one.
-    Eigen::Affine3d mirror = Eigen::Affine3d::Identity();
-    mirror.linear()(0, 0) = -1;
-    EXPECT_NEAR(between(mirror, mirror, 0.5).linear().determinant(), -1, 1e-12);
+}
+
+TEST(Motion, OfMirroredObjectsTurnsToo) {
+    const auto pose = [](double angle_deg, const Vec3d& scale, const Vec3d& axis) {
+        return Eigen::Affine3d(Eigen::Translation3d(angle_deg, 2, 3) *
+                               Eigen::AngleAxisd(radians(angle_deg), axis.normalized()) *
+                               Eigen::Scaling(scale));
+    };
+    for (const Vec3d& scale : {Vec3d(1, 1, -1), Vec3d(-1, 1, 1), Vec3d(-1, 2, 1), Vec3d(3, -0.5, 1),
+                               Vec3d(-1, -1, -1), Vec3d(-1, -2, -3)})
+        for (const Vec3d& axis : {Vec3d(0, 0, 1), Vec3d(1, 2, 3)}) {
+            const Eigen::Affine3d from = pose(30, scale, axis), to = pose(50, scale, axis);
+            // Rounding of a decomposition of numbers up to 50.
+            for (const double t : {0.0, 0.25, 0.5, 1.0})
+                EXPECT_LT((between(from, to, t).matrix() - pose(30 + 20 * t, scale, axis).matrix()).norm(),
+                          1e-12)
+                    << scale.transpose() << " about " << axis.transpose() << " at " << t;
+        }
+}
+
+// A negative factor that grows: the stretch changes linearly.
+TEST(Motion, OfAMirroredObjectThatGrows) {
+    const Eigen::Affine3d from(Eigen::Scaling(-1.0, 1.0, 1.0)), to(Eigen::Scaling(-3.0, 2.0, 1.0));
+    EXPECT_LT((between(from, to, 0.5).linear() - Mat3d(Vec3d(-2, 1.5, 1).asDiagonal())).norm(), 1e-12);
+}
+
+TEST(Motion, IntoTheMirrorImageIsLinear) {
+    const Eigen::Affine3d from(Eigen::AngleAxisd(radians(20), Vec3d::UnitZ())),
+        to(Eigen::Scaling(-1.0, 1.0, 1.0));
+    const Mat3d expected = 0.75 * from.linear() + 0.25 * to.linear();
+    EXPECT_LT((between(from, to, 0.25).linear() - expected).norm(), 1e-15);
 }
 
 }  // namespace

@@ -13,6 +13,26 @@ Mat3d rotation_between(const Mat3d& from, const Mat3d& to, double t) {
     return Eigen::Quaterniond(from).slerp(t, Eigen::Quaterniond(to)).normalized().toRotationMatrix();
 }
 
+/// A rotation times a stretch.
+struct Turned {
+    Mat3d rotation, stretch;
+
+    explicit Turned(const Mat3d& linear) {
+        Eigen::Affine3d(linear).computeRotationScaling(&rotation, &stretch);
+    }
+};
+
+Mat3d linear_between(const Mat3d& from, const Mat3d& to, double t) {
+    const double from_sign = from.determinant(), to_sign = to.determinant();
+    // What becomes its own mirror image is flat in between: no rotation leads there.
+    if (from_sign * to_sign < 0) return from + (to - from) * t;
+    // The stretch of a mirrored pose would be negative along an axis that differs from pose to pose. The
+    // negative of the pose is not mirrored.
+    const double sign = from_sign < 0 || to_sign < 0 ? -1 : 1;
+    const Turned a(sign * from), b(sign * to);
+    return sign * rotation_between(a.rotation, b.rotation, t) * (a.stretch + (b.stretch - a.stretch) * t);
+}
+
 }  // namespace
 
 Motion::Motion(const SceneSnapshot& scene, const Camera& camera) : camera(camera) {
@@ -32,12 +52,8 @@ std::vector<Eigen::Affine3d> Motion::poses_before(const SceneSnapshot& scene) co
 }
 
 Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, double t) {
-    Mat3d from_rotation, from_stretch, to_rotation, to_stretch;
-    from.computeRotationScaling(&from_rotation, &from_stretch);
-    to.computeRotationScaling(&to_rotation, &to_stretch);
     Eigen::Affine3d result = Eigen::Affine3d::Identity();
-    result.linear() =
-        rotation_between(from_rotation, to_rotation, t) * (from_stretch + (to_stretch - from_stretch) * t);
+    result.linear() = linear_between(from.linear(), to.linear(), t);
     result.translation() = from.translation() + (to.translation() - from.translation()) * t;
     return result;
 }

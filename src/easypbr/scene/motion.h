@@ -23,7 +23,8 @@ struct Motion {
 };
 
 /// The pose at time t between two others, at 0 the first: the rotation turns evenly about one axis (slerp),
-/// the shorter way; translation and stretching change linearly.
+/// the shorter way; translation and stretching change linearly. So do mirrored poses. Between a pose and a
+/// mirrored one all changes linearly.
 Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, double t);
 
 /// The same for cameras: pose, angle of view or height, and intrinsics when both have them. Projection and
