@@ -231,6 +231,38 @@ TEST(Animations, MorphTargetsAddUp) {
     EXPECT_THROW(animations.apply(0, std::numeric_limits<double>::infinity()), ArgumentError);
 }
 
+// Copies move the same meshes: what one has put, another one takes back.
+TEST(Animations, CopiesKnowWhatEachOtherPut) {
+    Mesh mesh = triangle();
+    mesh.edit([](MeshData& data) { data.materials = {Material()}; });
+    AnimationRig rig;
+    rig.nodes.resize(1);
+    rig.nodes[0].mesh = mesh;
+    rig.materials.resize(1);
+    rig.materials[0].parameters = {0.25};
+    rig.materials[0].material = [](const std::vector<double>& parameters) {
+        Material material;
+        material.roughness = float(parameters[0]);
+        return material;
+    };
+    rig.materials[0].users = {{mesh, 0}};
+    rig.animations = {{"rough",
+                       1,
+                       {channel(Interpolation::linear, {0, 1}, ArrayXf::Dense{{0.25f}, {0.75f}},
+                                AnimatedProperty::material)}},
+                      {"still", 1, {}}};
+    const Animations loaded(std::move(rig));
+    const auto roughness = [&] { return mesh.snapshot()->materials[0].roughness; };
+    Animations first = loaded, second = loaded, third = loaded;
+    first.apply(0, 1);
+    EXPECT_EQ(roughness(), 0.75f);
+    second.apply(0, 0);
+    EXPECT_EQ(roughness(), 0.25f) << "the first key";
+    first.apply(0, 1);
+    third.apply(1, 0);
+    EXPECT_EQ(roughness(), 0.25f) << "the file's value";
+}
+
 // A joint that scales by 2 along x turns the normal (1, 1, 0) as the inverse transpose does: to (1/2, 1, 0).
 TEST(Animations, NormalsFollowTheInverseTranspose) {
     MeshData data = *triangle().snapshot();

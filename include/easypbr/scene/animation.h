@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -148,6 +149,7 @@ class Animations {
 
   private:
     struct Pose;
+    struct PutMaterials;
     std::vector<Pose> pose_at_rest() const;
     std::vector<Pose> pose(const Animation& animation, double time_s) const;
     /// The poses at a time, brought into the animation's duration with `loop`.
@@ -170,9 +172,10 @@ class Animations {
     void put_materials(const Animation& animation, double time_s);
 
     AnimationRig rig_;
-    std::vector<size_t> order_;                        ///< parents before children
-    std::vector<std::vector<double>> put_parameters_;  ///< of materials, as they were put last
-    std::vector<bool> moved_;                          ///< nodes that channels name
+    std::vector<size_t> order_;  ///< parents before children
+    /// Copies share it, as they share the meshes.
+    std::shared_ptr<PutMaterials> put_materials_;
+    std::vector<bool> moved_;  ///< nodes that channels name
 };
 
 }  // namespace easypbr

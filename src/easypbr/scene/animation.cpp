@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <mutex>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -183,6 +184,12 @@ Array1d sample(const AnimationChannel& channel, double time_s) {
     return length > 0 ? Eigen::VectorXd(value / length) : Eigen::VectorXd(Eigen::Vector4d(0, 0, 0, 1));
 }
 
+/// Parameters of materials as they were put last.
+struct Animations::PutMaterials {
+    std::mutex mutex;
+    std::vector<std::vector<double>> parameters;
+};
+
 /// A node's properties at a moment.
 struct Animations::Pose {
     Vec3d translation, scale;
@@ -197,7 +204,8 @@ struct Animations::Pose {
     }
 };
 
-Animations::Animations(AnimationRig rig) : rig_(std::move(rig)) {
+Animations::Animations(AnimationRig rig)
+    : rig_(std::move(rig)), put_materials_(std::make_shared<PutMaterials>()) {
     const size_t count = rig_.nodes.size();
     for (const AnimationNode& node : rig_.nodes) {
         check_index("node", node.parent, count, true);
@@ -218,7 +226,8 @@ Animations::Animations(AnimationRig rig) : rig_(std::move(rig)) {
     for (const Animation& animation : rig_.animations)
         for (const AnimationChannel& channel : animation.channels)
             if (is_of_node(channel)) moved_[size_t(channel.node)] = true;
-    for (const AnimatedMaterial& material : rig_.materials) put_parameters_.push_back(material.parameters);
+    for (const AnimatedMaterial& material : rig_.materials)
+        put_materials_->parameters.push_back(material.parameters);
     std::vector<bool> placed(count, false);
     // As many rounds as the hierarchy is deep; a circle would never be placed.
     for (bool again = true; again;) {
@@ -419,14 +428,16 @@ void Animations::put_at_rest() {
 
 void Animations::put_materials(const Animation& animation, double time_s) {
     auto parameters = parameters_at(rig_.materials, AnimatedProperty::material, animation, time_s);
+    const std::scoped_lock lock(put_materials_->mutex);
     for (size_t i = 0; i < parameters.size(); ++i) {
-        if (parameters[i] == put_parameters_[i]) continue;
+        std::vector<double>& put = put_materials_->parameters[i];
+        if (parameters[i] == put) continue;
         const Material material = rig_.materials[i].material(parameters[i]);
         for (auto& [mesh, place] : rig_.materials[i].users)
             mesh.edit([&, slot = place](MeshData& data) {
                 if (slot < data.materials.size()) data.materials[slot] = material;
             });
-        put_parameters_[i] = std::move(parameters[i]);
+        put = std::move(parameters[i]);
     }
 }
 
