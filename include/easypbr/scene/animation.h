@@ -132,7 +132,8 @@ class Animations {
     void apply(size_t index, double time_s, bool loop = true);
 
     /// Puts the vertices and normals where they are without an animation: by the weights at rest, and where
-    /// the joints are at rest. Meshes without joints whose weights at rest are 0 keep their arrays.
+    /// the joints are at rest. Meshes without joints whose weights at rest are 0 keep their arrays, and
+    /// meshes their poses, but for skins whose node is scaled to nothing.
     void put_at_rest();
 
     /// The lights that the animations of the file move, change or hide, at a time of one of them, by their
@@ -167,6 +168,9 @@ class Animations {
     /// A mesh that is where its joints are, whose node is scaled to nothing: it takes its parent's pose, as
     /// nothing else hangs from it.
     bool is_without_own_pose(size_t node, const Pose& pose) const;
+    void put_pose(size_t node, const Pose& pose);
+    void put_vertices(size_t node, const std::vector<Pose>& poses,
+                      const std::vector<Eigen::Affine3d>& T_world_nodes);
     void deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
     void put_materials(const Animation& animation, double time_s);

@@ -161,6 +161,10 @@ bool is_flat(const Eigen::Affine3d& T) {
     return !(std::abs(T.linear().determinant()) >= 1e-30);
 }
 
+bool follows_joints(const AnimationNode& node) {
+    return node.skin >= 0 && !node.deformation.joints.empty();
+}
+
 void show(Mesh& mesh, bool visible) {
     Style style = mesh.style();
     if (style.visible.value() == visible) return;
@@ -396,33 +400,43 @@ void Animations::apply(size_t index, double time_s, bool loop) {
     for (const size_t i : order_) {
         AnimationNode& node = rig_.nodes[i];
         if (!node.mesh) continue;
-        node.mesh->set_T_parent_mesh(is_without_own_pose(i, poses[i]) ? Eigen::Affine3d::Identity()
-                                                                      : poses[i].matrix());
+        put_pose(i, poses[i]);
         if (poses[i].visible) show(*node.mesh, *poses[i].visible);
     }
     put_materials(rig_.animations[index], time_in(index, time_s, loop));
     for (const size_t i : order_)
-        if (AnimationNode& node = rig_.nodes[i]; node.mesh && !node.deformation.empty()) {
-            const Eigen::Affine3d T_world_parent =
-                node.parent < 0 ? Eigen::Affine3d::Identity() : T_world_nodes[size_t(node.parent)];
-            deform(node, is_without_own_pose(i, poses[i]) ? T_world_parent : T_world_nodes[i],
-                   poses[i].weights, T_world_nodes);
-        }
+        if (rig_.nodes[i].mesh && !rig_.nodes[i].deformation.empty()) put_vertices(i, poses, T_world_nodes);
 }
 
 bool Animations::is_without_own_pose(size_t node, const Pose& pose) const {
-    return rig_.nodes[node].skin >= 0 && is_flat(pose.matrix()) &&
+    return follows_joints(rig_.nodes[node]) && is_flat(pose.matrix()) &&
            std::ranges::find(rig_.nodes, int(node), &AnimationNode::parent) == rig_.nodes.end();
 }
 
+void Animations::put_pose(size_t node, const Pose& pose) {
+    rig_.nodes[node].mesh->set_T_parent_mesh(is_without_own_pose(node, pose) ? Eigen::Affine3d::Identity()
+                                                                             : pose.matrix());
+}
+
+void Animations::put_vertices(size_t i, const std::vector<Pose>& poses,
+                              const std::vector<Eigen::Affine3d>& T_world_nodes) {
+    AnimationNode& node = rig_.nodes[i];
+    const Eigen::Affine3d T_world_parent =
+        node.parent < 0 ? Eigen::Affine3d::Identity() : T_world_nodes[size_t(node.parent)];
+    deform(node, is_without_own_pose(i, poses[i]) ? T_world_parent : T_world_nodes[i], poses[i].weights,
+           T_world_nodes);
+}
+
 void Animations::put_at_rest() {
-    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(pose_at_rest());
+    const std::vector<Pose> poses = pose_at_rest();
+    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
     for (const size_t i : order_) {
-        AnimationNode& node = rig_.nodes[i];
-        const bool follows = node.skin >= 0 && !node.deformation.joints.empty();
+        const AnimationNode& node = rig_.nodes[i];
         const bool morphs = !node.deformation.targets_V.empty() &&
                             std::ranges::any_of(node.weights, [](float weight) { return weight != 0; });
-        if (node.mesh && (follows || morphs)) deform(node, T_world_nodes[i], node.weights, T_world_nodes);
+        if (!node.mesh || !(follows_joints(node) || morphs)) continue;
+        if (is_without_own_pose(i, poses[i])) put_pose(i, poses[i]);
+        put_vertices(i, poses, T_world_nodes);
     }
 }
 
@@ -447,7 +461,7 @@ void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh
     const Deformation& from = node.deformation;
     Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N)};
     add_targets(from, weights, out);
-    if (node.skin >= 0 && !from.joints.empty()) {
+    if (follows_joints(node)) {
         // The joints say where the vertices are in the world; the mesh is drawn with its own pose. Below what
         // is scaled to nothing it is a point or flat whatever its vertices are.
         if (is_flat(T_world_mesh)) return;
