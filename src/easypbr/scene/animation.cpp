@@ -9,14 +9,11 @@
 #include <mutex>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/scene/directions.h"
+#include "easypbr/scene/deformation.h"
 
 namespace easypbr {
 namespace {
-
-constexpr size_t morph_grain = 4096;
 
 Eigen::VectorXd key_row(const AnimationChannel& channel, Eigen::Index i) {
     return channel.values.row(i).transpose().cast<double>();
@@ -101,61 +98,6 @@ std::vector<std::vector<double>> parameters_at(const std::vector<Item>& items, A
     return parameters;
 }
 
-/// Throws unless all arrays of a deformation fit together and every joint is one of the skin's.
-void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
-    const Eigen::Index n = d.V.rows();
-    const auto fits = [&](const auto& array) { return array.empty() || array.rows() == n; };
-    bool good = fits(d.N) && fits(d.joints) && fits(d.weights) && d.joints.rows() == d.weights.rows() &&
-                d.joints.cols() == d.weights.cols() && d.targets_V.size() == d.targets_N.size();
-    for (size_t k = 0; good && k < d.targets_V.size(); ++k)
-        good = fits(d.targets_V[k]) && fits(d.targets_N[k]);
-    if (!good) throw ArgumentError("animation rig: joints, weights or morph targets do not fit the vertices");
-    if (!has_skin || d.joints.empty()) return;
-    // NaN is neither.
-    if (!(d.joints.array() >= 0 && d.joints.array() < float(joints)).all())
-        throw ArgumentError(fmt::format("animation rig: vertices follow joints {} to {}, but the skin has {}",
-                                        d.joints.minCoeff(), d.joints.maxCoeff(), joints));
-}
-
-/// Weighted sums of the joints' matrices move V; their cofactors turn N, as the inverse transpose does.
-struct Deformed {
-    Array3f::Dense V, N;
-};
-
-void add_targets(const Deformation& from, const std::vector<float>& weights, Deformed& out) {
-    for (size_t k = 0; k < from.targets_V.size() && k < weights.size(); ++k) {
-        if (weights[k] == 0) continue;
-        parallel_for(size_t(out.V.rows()), morph_grain, [&](size_t i) {
-            const auto r = Eigen::Index(i);
-            out.V.row(r) += weights[k] * from.targets_V[k].row(r);
-            if (out.N.rows() && !from.targets_N[k].empty())
-                out.N.row(r) += weights[k] * from.targets_N[k].row(r);
-        });
-    }
-}
-
-void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& T_mesh_joints,
-                   Deformed& out) {
-    parallel_for(size_t(out.V.rows()), morph_grain, [&](size_t i) {
-        const auto r = Eigen::Index(i);
-        Eigen::Matrix<double, 3, 4> T = Eigen::Matrix<double, 3, 4>::Zero();
-        double sum = 0;
-        for (Eigen::Index k = 0; k < from.weights.cols(); ++k) {
-            const double weight = double(from.weights(r, k));
-            if (weight == 0) continue;
-            T += weight * T_mesh_joints[size_t(from.joints(r, k))].matrix().topRows<3>();
-            sum += weight;
-        }
-        if (!(sum > 0)) return;
-        T /= sum;
-        const Vec3d v = out.V.row(r).transpose().cast<double>();
-        out.V.row(r) = (T.leftCols<3>() * v + T.col(3)).cast<float>().transpose();
-        if (!out.N.rows()) return;
-        const Vec3d n = out.N.row(r).transpose().cast<double>();
-        out.N.row(r) = (detail::cofactors(T.leftCols<3>()) * n).cast<float>().transpose();
-    });
-}
-
 /// Scaled to nothing along an axis at least: it has no inverse.
 bool is_flat(const Eigen::Affine3d& T) {
     return !(std::abs(T.linear().determinant()) >= 1e-30);
@@ -170,13 +112,6 @@ void show(Mesh& mesh, bool visible) {
     if (style.visible.value() == visible) return;
     style.visible = visible;
     mesh.set_style(style);
-}
-
-void normalize(Array3f::Dense& N) {
-    parallel_for(size_t(N.rows()), morph_grain, [&](size_t i) {
-        auto n = N.row(Eigen::Index(i));
-        if (const float length = n.norm(); length > 0) n /= length;
-    });
 }
 
 }  // namespace
@@ -458,22 +393,18 @@ void Animations::put_materials(const Animation& animation, double time_s) {
 void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh,
                         const std::vector<float>& weights,
                         const std::vector<Eigen::Affine3d>& T_world_nodes) {
-    const Deformation& from = node.deformation;
-    Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N)};
-    add_targets(from, weights, out);
+    std::vector<Eigen::Affine3d> T_mesh_joints;
     if (follows_joints(node)) {
         // The joints say where the vertices are in the world; the mesh is drawn with its own pose. Below what
         // is scaled to nothing it is a point or flat whatever its vertices are.
         if (is_flat(T_world_mesh)) return;
         const Skin& skin = rig_.skins[size_t(node.skin)];
         const Eigen::Affine3d T_mesh_world = T_world_mesh.inverse();
-        std::vector<Eigen::Affine3d> T_mesh_joints;
         for (size_t k = 0; k < skin.joints.size(); ++k)
             T_mesh_joints.push_back(T_mesh_world * T_world_nodes[size_t(skin.joints[k])] *
                                     skin.T_joint_at_rest[k]);
-        follow_joints(from, T_mesh_joints, out);
     }
-    normalize(out.N);
+    const Deformed out = deformed(node.deformation, weights, T_mesh_joints);
     node.mesh->edit([&](MeshData& data) {
         data.V = out.V;
         if (out.N.rows()) data.N = out.N;
