@@ -126,8 +126,32 @@ TEST_F(Player, TellsHowThingsMoved) {
     player_.seek(0.5);
     EXPECT_NEAR(moved(1), -0.25, 1e-12);  // It began half a second ago.
     player_.seek(4.5);
-    EXPECT_NEAR(moved(1), 1.5, 1e-12);  // It went around: a second ago it was at 1.75, now it is at 0.25.
-    EXPECT_NEAR(x(), 0.25, 1e-12);      // Nothing was moved by the question.
+    EXPECT_NEAR(moved(1), -0.25, 1e-12);  // It went around: it began half a second ago.
+    player_.set_speed(-1);
+    player_.seek(-0.5);
+    EXPECT_NEAR(moved(1), 0.25, 1e-12);  // It is at 1.75, and was at its end, at 2.
+    player_.seek(4.5);
+    EXPECT_NEAR(x(), 0.25, 1e-12);  // Nothing was moved by the question.
+}
+
+// Half a second a frame: the animation of 4 s goes around with the ninth.
+TEST_F(Player, TellsWhatJumpsWhereItBeginsAndGoesAround) {
+    std::vector<double> jumps;
+    player_.on_jump = [&](const MovedMeshes& moved) {
+        ASSERT_EQ(moved.size(), 1u);
+        jumps.push_back(moved[0].second.translation().x());
+    };
+    player_.add("box", animations_);
+    player_.play(0);
+    EXPECT_EQ(jumps, std::vector<double>{0}) << "it begins at rest";
+    for (int i = 0; i < 8; ++i) clock_.tick();
+    EXPECT_EQ(jumps.size(), 1u);
+    EXPECT_NEAR(x(), 2, 1e-12);
+    clock_.tick();
+    ASSERT_EQ(jumps.size(), 2u);
+    EXPECT_NEAR(jumps[1], -0.25, 1e-12);  // from 0 to 0.25, not from 2
+    clock_.tick();
+    EXPECT_EQ(jumps.size(), 2u);
 }
 
 TEST_F(Player, KnowsOtherFilesAndRefusesWhatThereIsNot) {

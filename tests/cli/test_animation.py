@@ -77,6 +77,25 @@ def test_a_still_is_blurred_like_a_frame_of_a_recording(render, moving, tmp_path
     np.testing.assert_array_equal(png.read(tmp_path / "first.png"), png.read(tmp_path / "rest.png"))
 
 
+def test_where_it_goes_around_nothing_is_blurred_across(render, moving, tmp_path):
+    """0.5 s at 10 frames a second: frame 6 of a longer recording is frame 1 again; it came from the beginning."""
+    pose = np.eye(4)
+    pose[2, 3] = 6
+    (tmp_path / "rest.json").write_text(json.dumps({"keys": [pose.tolist()] * 2, "segment_s": 0.8, "mode": "linear"}))
+    look = ("--animation", "0", "--fps", "10", "--samples", "8", "--exposure", "1", "--set", "camera.near=0.1", "--set",
+            "lights.key.enabled=false", "--set", "lights.fill.enabled=false", "--set", "lights.rim.enabled=false", "--set",
+            "motion_blur.enabled=true", "--set", "motion_blur.shutter=1")
+    render(moving, "--camera-path", "rest.json", "-o", "f_%d.png", *look)
+    # Poses before are found by subtraction: they differ in the last bits of a double, pictures by rounding.
+    first, again = (png.read(tmp_path / f"f_{i}.png").astype(int) for i in (1, 6))
+    assert np.abs(first - again).max() <= 1
+    # Before its beginning an animation goes around as well: the shutter is as long as elsewhere.
+    (tmp_path / "pose.txt").write_text(" ".join(map(str, pose.ravel())))
+    for time in (-0.1, 0.4):
+        render(moving, "-o", f"t{time}.png", "--animation-time", time, "--camera-pose", "pose.txt", *look)
+    assert np.abs(png.read(tmp_path / "t-0.1.png").astype(int) - png.read(tmp_path / "t0.4.png")).max() <= 1
+
+
 @pytest.fixture
 def moving_camera(moving):
     """The same file with a camera and a lamp, six units before the triangle, that go with it."""

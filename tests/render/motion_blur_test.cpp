@@ -100,6 +100,47 @@ TEST(MotionBlur, IsNotThereWithoutShutterTimeOrMemory) {
     }
 }
 
+// A jump from -40 to 20, of which the last 10 units are motion: by itself, and by what it hangs from.
+TEST(MotionBlur, OfWhatJumpsIsTheMotionThatItIsSaidToHave) {
+    const Eigen::Affine3d before(Eigen::Translation3d(-10, 0, 0));
+    for (const bool hangs : {false, true}) {
+        Moving moving;
+        Mesh parent;
+        if (hangs) {
+            parent.add_child(moving.mesh);
+            moving.scene.show(parent, "square");
+        }
+        Mesh& moved = hangs ? parent : moving.mesh;
+        const auto move = [&](double x) {
+            moved.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(x, 0, 0)));
+        };
+        move(-40);
+        moving.draw(1);
+        move(20);
+        moving.session.replace_motion({{moved, before}});
+        expect_profile(moving.draw(64), 10, 20);
+        // It was for one picture.
+        move(0);
+        expect_profile(moving.draw(64), 20, 0);
+    }
+}
+
+// What a jumping child hangs from moved meanwhile, which counts as well.
+TEST(MotionBlur, OfAJumpOnWhatMoves) {
+    Moving moving;
+    Mesh parent;
+    parent.add_child(moving.mesh);
+    moving.scene.show(parent, "square");
+    parent.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-10, 0, 0)));
+    moving.move(-40);
+    moving.draw(1);
+    parent.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(5, 0, 0)));
+    moving.move(20);
+    moving.session.replace_motion({{moving.mesh, Eigen::Affine3d(Eigen::Translation3d(-10, 0, 0))}});
+    // The parent by 15, the child by 10; it is at 25.
+    expect_profile(moving.draw(64), 0, 25);
+}
+
 TEST(MotionBlur, SiblingsOfOneNameAreTwoObjects) {
     Moving moving;
     Mesh other = moving.mesh.clone(), parent;

@@ -238,6 +238,50 @@ TEST(Animations, MorphTargetsAddUp) {
     EXPECT_THROW(animations.apply(0, std::numeric_limits<double>::infinity()), ArgumentError);
 }
 
+// Two seconds: x goes from 0 to 4, y steps from 0 to 3 at 1 s.
+AnimationRig stepping(const Mesh& slides, const Mesh& steps) {
+    AnimationRig rig;
+    rig.nodes.resize(2);
+    rig.nodes[0].mesh = slides;
+    rig.nodes[1].mesh = steps;
+    AnimationChannel step = channel(Interpolation::step, {0, 1}, ArrayXf::Dense{{0, 0, 0}, {0, 3, 0}});
+    step.node = 1;
+    rig.animations = {
+        {"both", 2, {channel(Interpolation::linear, {0, 2}, ArrayXf::Dense{{0, 0, 0}, {4, 0, 0}}), step}}};
+    return rig;
+}
+
+TEST(Animations, StepsHaveNoMotion) {
+    Mesh slides = triangle(), steps = triangle();
+    const Animations animations(stepping(slides, steps));
+    const MovedMeshes moved = animations.motion(0, 0.75, 1.25);
+    ASSERT_EQ(moved.size(), 2u);
+    EXPECT_LT((moved[0].second.translation() - Vec3d(-1, 0, 0)).norm(), 1e-12);
+    EXPECT_EQ(moved[1].second.matrix(), Eigen::Matrix4d::Identity());
+    const MovedMeshes jumped = animations.jumps(0, 0.75, 1.25);
+    ASSERT_EQ(jumped.size(), 1u);
+    EXPECT_TRUE(jumped[0].first == steps);
+    EXPECT_TRUE(animations.jumps(0, 0.25, 0.75).empty());
+}
+
+TEST(Animations, WhatGoesAroundMovesFromItsBeginning) {
+    Mesh slides = triangle(), steps = triangle();
+    const Animations animations(stepping(slides, steps));
+    const auto x = [&](double from_s, double to_s, bool loop) {
+        return animations.motion(0, from_s, to_s, loop)[0].second.translation().x();
+    };
+    // 2 units a second.
+    EXPECT_NEAR(x(1.75, 2.25, true), -0.5, 1e-12);
+    EXPECT_NEAR(x(2.25, 1.75, true), 0.5, 1e-12) << "backwards, from its end";
+    EXPECT_NEAR(x(1.5, 2, true), -1, 1e-12) << "the end itself";
+    EXPECT_NEAR(x(-0.5, 0, true), 0, 1e-12);
+    EXPECT_NEAR(x(-1, -0.5, true), -1, 1e-12) << "before its beginning it goes around too";
+    EXPECT_NEAR(x(1.75, 2.25, false), -0.5, 1e-12) << "it rests at its end";
+    EXPECT_EQ(animations.jumps(0, 1.75, 2.25).size(), 2u) << "the step goes back, too";
+    EXPECT_TRUE(animations.jumps(0, 1.75, 2.25, false).empty());
+    EXPECT_TRUE(animations.jumps(0, 1.5, 2).empty());
+}
+
 // Copies move the same meshes: what one has put, another one takes back.
 TEST(Animations, CopiesKnowWhatEachOtherPut) {
     Mesh mesh = triangle();

@@ -1,6 +1,7 @@
 // Plays the animations of files by a clock.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,12 +9,8 @@
 
 #include "easypbr/app/clock.h"
 #include "easypbr/core/math.h"
+#include "easypbr/scene/animation.h"
 #include "easypbr/scene/scene.h"
-
-namespace easypbr {
-class Animations;
-class Mesh;
-}  // namespace easypbr
 
 namespace easypbr::app {
 
@@ -75,10 +72,13 @@ class AnimationPlayer {
 
     /// How the animation's meshes moved in the `seconds` of the clock before now, playing or not; see
     /// Animations::motion(). At its beginning the animation has not moved.
-    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion(double seconds) const;
+    MovedMeshes motion(double seconds) const;
 
     /// After the clock's tick: puts the meshes where they are now, while it plays.
     void update();
+    /// Called when meshes are put where they jumped to, with the motion they have in place of that: where an
+    /// animation begins or goes around, and at steps; see Animations::jumps().
+    std::function<void(const MovedMeshes&)> on_jump;
 
   private:
     struct File;
@@ -96,6 +96,7 @@ class AnimationPlayer {
     size_t current_ = 0;
     double speed_ = 1, base_ = 0, clock_base_ = 0;
     bool playing_ = false, loop_ = true;
+    std::optional<double> applied_;  ///< time of the current animation that the meshes were put to last
 };
 
 }  // namespace easypbr::app

@@ -111,6 +111,10 @@ struct AnimationRig {
     std::vector<AnimatedItem<Camera>> cameras = {};
 };
 
+/// How meshes moved, each as a pose in its own frame: where it is at T_parent_mesh, it was at
+/// T_parent_mesh * pose.
+using MovedMeshes = std::vector<std::pair<Mesh, Eigen::Affine3d>>;
+
 /// The animations of a file that was loaded, which move its meshes. Copies share the meshes.
 class Animations {
   public:
@@ -123,6 +127,9 @@ class Animations {
     /// The index of an animation by its name, or its number from 0. Throws NameError with the nearest name.
     size_t find(const std::string& name) const;
     double duration_s(size_t index) const;
+    /// The time within an animation's duration that is shown at a time: with `loop` a whole number of
+    /// durations after the beginning is the end. Throws as apply().
+    double time_in(size_t index, double time_s, bool loop = true) const;
 
     /// Puts the meshes where they are at a time of an animation: poses and visibility of nodes, vertices and
     /// normals of what has skins or morph targets, and materials. With `loop` the time goes around, and a
@@ -142,20 +149,27 @@ class Animations {
     /// The same of the cameras.
     std::map<std::string, Camera> cameras(size_t index, double time_s, bool loop = true) const;
 
-    /// How each node's mesh moved between two times of an animation, as poses in the mesh's own frame: where
-    /// it is at `to_s`, T_parent_mesh, it was T_parent_mesh * pose at `from_s`. Vertices apart. Throws as
-    /// apply().
-    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion(size_t index, double from_s, double to_s,
-                                                         bool loop = true) const;
+    /// How each node's mesh moved between two times of an animation. What jumps has no motion: an animation
+    /// that went around moved since its beginning (played backwards: since its end), and channels of steps
+    /// never move. Vertices apart. Throws as apply().
+    MovedMeshes motion(size_t index, double from_s, double to_s, bool loop = true) const;
+    /// Those of motion() that jumped too.
+    MovedMeshes jumps(size_t index, double from_s, double to_s, bool loop = true) const;
+    /// The cameras() where motion() to `to_s` begins.
+    std::map<std::string, Camera> cameras_before(size_t index, double from_s, double to_s,
+                                                 bool loop = true) const;
 
   private:
     struct Pose;
     struct PutMaterials;
     std::vector<Pose> pose_at_rest() const;
-    std::vector<Pose> pose(const Animation& animation, double time_s) const;
-    /// The poses at a time, brought into the animation's duration with `loop`.
-    std::vector<Pose> pose_at(size_t index, double time_s, bool loop) const;
-    double time_in(size_t index, double time_s, bool loop) const;
+    struct Moment;
+    std::vector<Pose> pose(const Animation& animation, const Moment& moment) const;
+    /// A time, brought into the animation's duration with `loop`.
+    Moment moment(size_t index, double time_s, bool loop) const;
+    /// Where motion() begins.
+    Moment moment_before(size_t index, double from_s, double to_s, bool loop) const;
+    MovedMeshes moved_between(const std::vector<Pose>& from, const std::vector<Pose>& to) const;
     std::vector<Eigen::Affine3d> world_poses(const std::vector<Pose>& poses) const;
     /// Whether the node or one above it is hidden.
     bool is_hidden(int node, const std::vector<Pose>& poses) const;
@@ -163,8 +177,7 @@ class Animations {
     bool is_moved(int node) const;
     template <class Value>
     std::map<std::string, Value> placed(const std::vector<AnimatedItem<Value>>& items,
-                                        AnimatedProperty property, size_t index, double time_s,
-                                        bool loop) const;
+                                        AnimatedProperty property, size_t index, const Moment& moment) const;
     /// A mesh that is where its joints are, whose node is scaled to nothing: it takes its parent's pose, as
     /// nothing else hangs from it.
     bool is_without_own_pose(size_t node, const Pose& pose) const;
@@ -173,7 +186,7 @@ class Animations {
                       const std::vector<Eigen::Affine3d>& T_world_nodes);
     void deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
-    void put_materials(const Animation& animation, double time_s);
+    void put_materials(const Animation& animation, const Moment& moment);
 
     AnimationRig rig_;
     std::vector<size_t> order_;  ///< parents before children

@@ -7,7 +7,6 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/scene/animation.h"
 
 namespace easypbr::app {
 
@@ -38,6 +37,7 @@ void put_lights(Scene scene, const std::string& file, const Animations& animatio
 }
 
 void AnimationPlayer::rebuild_names() {
+    applied_.reset();
     places_.clear();
     names_.clear();
     for (size_t file = 0; file < files_.size(); ++file) {
@@ -99,6 +99,7 @@ void AnimationPlayer::play(size_t number) {
     if (number >= places_.size())
         throw NameError(fmt::format("no animation {}, there are {}", number, places_.size()));
     current_ = number;
+    applied_.reset();
     seek(0);
     playing_ = true;
 }
@@ -152,12 +153,10 @@ void AnimationPlayer::set_speed(double speed) {
     speed_ = speed;
 }
 
-std::vector<std::pair<Mesh, Eigen::Affine3d>> AnimationPlayer::motion(double seconds) const {
+MovedMeshes AnimationPlayer::motion(double seconds) const {
     if (empty()) return {};
     const Place place = places_[current_];
-    const double now = time(), before = now - seconds * speed_;
-    return files_[place.file].animations.motion(place.index, now >= 0 ? std::max(before, 0.0) : before, now,
-                                                loop_);
+    return files_[place.file].animations.motion(place.index, time() - seconds * speed_, time(), loop_);
 }
 
 void AnimationPlayer::update() {
@@ -167,8 +166,14 @@ void AnimationPlayer::update() {
 void AnimationPlayer::apply() {
     const Place place = places_[current_];
     File& file = files_[place.file];
-    file.animations.apply(place.index, time(), loop_);
-    if (file.scene) put_lights(*file.scene, file.name, file.animations, place.index, time(), loop_);
+    const double now = time();
+    file.animations.apply(place.index, now, loop_);
+    if (file.scene) put_lights(*file.scene, file.name, file.animations, place.index, now, loop_);
+    const std::optional<double> before = std::exchange(applied_, now);
+    if (!on_jump) return;
+    const MovedMeshes moved = before ? file.animations.jumps(place.index, *before, now, loop_)
+                                     : file.animations.motion(place.index, now, now, loop_);
+    if (!moved.empty()) on_jump(moved);
 }
 
 }  // namespace easypbr::app

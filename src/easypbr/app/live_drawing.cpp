@@ -13,7 +13,9 @@ using Kind = InputEvent::Kind;
 }  // namespace
 
 struct LiveDrawing::Own {
-    explicit Own(Session& session) : recorder(session, clock), player(clock) {}
+    explicit Own(Session& session) : recorder(session, clock), player(clock) {
+        player.on_jump = [&](const MovedMeshes& moved) { session.replace_motion(moved); };
+    }
     Clock clock;
     Recorder recorder;
     AnimationPlayer player;

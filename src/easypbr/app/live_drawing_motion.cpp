@@ -1,8 +1,6 @@
 // What a live drawing does by itself, frame by frame: camera paths and recordings.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <utility>
 
 #include "easypbr/app/live_drawing.h"
@@ -10,33 +8,6 @@
 #include "easypbr/scene/mesh.h"
 
 namespace easypbr::app {
-namespace {
-
-using Moved = std::vector<std::pair<Mesh, Eigen::Affine3d>>;
-
-/// How the objects moved in the world, with what they hang from: now at T_world_mesh, they were at
-/// change * T_world_mesh.
-std::vector<Eigen::Affine3d> changes_of(const SceneSnapshot& scene, const Moved& moved) {
-    std::map<const void*, Eigen::Affine3d> inherited;  // by children
-    std::vector<Eigen::Affine3d> changes;
-    for (const SceneSnapshot::Object& object : scene.objects) {
-        const auto parent = inherited.find(object.node);
-        Eigen::Affine3d change = parent == inherited.end() ? Eigen::Affine3d::Identity() : parent->second;
-        const auto own = std::ranges::find(moved, object.node,
-                                           [](const Moved::value_type& m) { return m.first.identity(); });
-        if (own != moved.end()) {
-            // By what it moved in the world, so that the scene's origin does not matter.
-            const Eigen::Affine3d now = own->first.T_world_mesh();
-            change = change * (now * own->second) * now.inverse(Eigen::Affine);
-        }
-        for (const Mesh& child : object.mesh->children) inherited[child.identity()] = change;
-        changes.push_back(change);
-    }
-    return changes;
-}
-
-}  // namespace
-
 void PathPlan::look_from(size_t chosen) {
     key = chosen;
     editor.pause();
@@ -84,10 +55,7 @@ Session::RefinedMotion LiveDrawing::shown_motion(const Camera& now) const {
     const double frame_s = 1 / form_.fps;
     const SceneSnapshot scene = session_.scene().snapshot();
     Motion motion(scene, now);
-    const std::vector<ObjectKey> keys = object_keys(scene);
-    const std::vector<Eigen::Affine3d> changes = changes_of(scene, player_.motion(frame_s));
-    for (size_t i = 0; i < keys.size(); ++i)
-        motion.poses[keys[i]] = changes[i] * scene.objects[i].T_world_mesh;
+    motion.replace(scene, player_.motion(frame_s));
     const auto& path = path_.editor.path();
     if (const auto before = recording_.camera_before())
         motion.camera = *before;

@@ -169,7 +169,7 @@ Drawn Session::draw(const PictureOptions& options) {
 
 Drawn Session::draw_once(const PictureOptions& options) {
     Prepared prepared = prepare(options);
-    const std::shared_ptr<const Motion> before = motion_.before(prepared.resolved.camera);
+    const std::shared_ptr<const Motion> before = motion_.before(prepared.scene, prepared.resolved.camera);
     if (settings_->motion_blur.enabled) prepared.options.motion = before;
     refined_.reset();
     Drawn drawn = begin(prepared, true, false);

@@ -101,6 +101,11 @@ class Session {
     void begin_motion(const std::optional<Camera>& from = std::nullopt) {
         motion_.begin(scene_.snapshot(), from);
     }
+    /// In the next picture these meshes moved so, and the camera since `from` (none: as it did), whatever
+    /// they did since the picture before: for what jumps, as an animation that goes around.
+    void replace_motion(const MovedMeshes& moved, const std::optional<Camera>& from = std::nullopt) {
+        motion_.replace(moved, from);
+    }
 
     /// Names of what is visible; the layer "object_id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;

@@ -207,7 +207,7 @@ class RenderJob {
         const CameraPath path =
             camera_path_ ? *camera_path_
                          : app::turntable(session_, options_.turntable.value_or(1) / recording.fps);
-        const auto play = [&](int frame, int, double) { animate(frame / recording.fps); };
+        const auto play = [&](int frame, int, double) { animate_next(frame / recording.fps); };
         animate_frame_before();
         recorder.record_path(path, picture.output, recording, options_.turntable, play);
     }
@@ -221,13 +221,13 @@ class RenderJob {
         const Camera rest = session_.resolve().camera;
         const auto camera = [&](double time_s) { return animation_->camera(time_of(time_s)).value_or(rest); };
         animate_frame_before();
-        recorder.record_frames(times, frame_before(), camera, picture.output, recording,
-                               [&](int, int, double time_s) { animate(time_s); });
+        recorder.record_frames(times, -frame_s(), camera, picture.output, recording,
+                               [&](int, int, double time_s) { animate_next(time_s); });
     }
 
     double time_of(double time_s) const { return options_.animation_time.value_or(0) + time_s; }
 
-    /// Puts what --animation names where it is `time` seconds after --animation-time.
+    /// Puts what --animation names where it is `time_s` seconds after --animation-time.
     void animate(double time_s) {
         if (animation_) animation_->apply(session_, time_of(time_s));
     }
@@ -237,14 +237,18 @@ class RenderJob {
         if (!animation_ || !session_.settings().motion_blur.enabled) return;
         animate_frame_before();
         session_.begin_motion();
-        animate(0);
+        animate_next(0);
     }
 
-    /// At its beginning an animation has not moved.
-    double frame_before() const {
-        return -std::min(1 / recording_of(options_).fps, options_.animation_time.value_or(0));
+    double frame_s() const { return 1 / recording_of(options_).fps; }
+    void animate_frame_before() { animate(-frame_s()); }
+    /// The next frame, after that of the time before. What the animation jumps by is no motion.
+    void animate_next(double time_s) {
+        animate(time_s);
+        const bool camera = !options_.turntable && !camera_path_;
+        if (animation_)
+            animation_->replace_jumps(session_, time_of(time_s - frame_s()), time_of(time_s), camera);
     }
-    void animate_frame_before() { animate(frame_before()); }
 
     void start_look() {
         session_.replace_settings(look_.settings);

@@ -31,11 +31,19 @@ void FileAnimation::apply(app::Session& session, double time_s) {
     if (const auto moved = camera(time_s)) session.set_camera(*moved);
 }
 
+void FileAnimation::replace_jumps(app::Session& session, double before_s, double time_s, bool camera) const {
+    std::optional<Camera> from;
+    if (camera && !camera_.empty()) from = named(animations_.cameras_before(index_, before_s, time_s));
+    session.replace_motion(animations_.jumps(index_, before_s, time_s), from);
+}
+
 std::optional<Camera> FileAnimation::camera(double time_s) const {
-    if (camera_.empty()) return {};
-    const std::map<std::string, Camera> cameras = animations_.cameras(index_, time_s);
-    const auto named = cameras.find(camera_);
-    return named == cameras.end() ? std::nullopt : std::optional(named->second);
+    return camera_.empty() ? std::nullopt : named(animations_.cameras(index_, time_s));
+}
+
+std::optional<Camera> FileAnimation::named(const std::map<std::string, Camera>& cameras) const {
+    const auto camera = cameras.find(camera_);
+    return camera == cameras.end() ? std::nullopt : std::optional(camera->second);
 }
 
 }  // namespace easypbr::cli

@@ -26,6 +26,7 @@ View::Own::Own(const Scene& scene, const Settings& settings, ViewClients clients
       stills([clients](EncodeJob job) { clients.publish(encode(std::move(job))); }) {
     session.replace_settings(settings);
     clock.on_tick = [this] { player.update(); };
+    player.on_jump = [this](const MovedMeshes& moved) { session.replace_motion(moved); };
 }
 
 View::Own::Own(Own& shared, ViewClients clients, const OwnViewOf& own)

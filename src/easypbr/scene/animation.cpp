@@ -15,6 +15,10 @@
 namespace easypbr {
 namespace {
 
+/// Times that differ by less than this, as a fraction of the duration, are the same: keys are floats, so that
+/// 2.1 s is not exactly where the animation ends that lasts as long.
+constexpr double same_time = 1e-6;
+
 Eigen::VectorXd key_row(const AnimationChannel& channel, Eigen::Index i) {
     return channel.values.row(i).transpose().cast<double>();
 }
@@ -84,15 +88,24 @@ void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
     }
 }
 
+/// Of a moment, at which channels of steps may have another time than the others.
+struct ChannelTimes {
+    double time_s, step_time_s;
+
+    double of(const AnimationChannel& channel) const {
+        return channel.interpolation == Interpolation::step ? step_time_s : time_s;
+    }
+};
+
 /// The parameters of all items at a time of an animation.
 template <class Item>
 std::vector<std::vector<double>> parameters_at(const std::vector<Item>& items, AnimatedProperty property,
-                                               const Animation& animation, double time_s) {
+                                               const Animation& animation, const ChannelTimes& times) {
     std::vector<std::vector<double>> parameters;
     for (const Item& item : items) parameters.push_back(item.parameters);
     for (const AnimationChannel& channel : animation.channels) {
         if (channel.property != property) continue;
-        const Eigen::VectorXd value = sample(channel, time_s);
+        const Eigen::VectorXd value = sample(channel, times.of(channel));
         std::copy(value.begin(), value.end(), parameters[size_t(channel.node)].begin() + channel.parameter);
     }
     return parameters;
@@ -127,6 +140,11 @@ Array1d sample(const AnimationChannel& channel, double time_s) {
 struct Animations::PutMaterials {
     std::mutex mutex;
     std::vector<std::vector<double>> parameters;
+};
+
+struct Animations::Moment : ChannelTimes {
+    explicit Moment(double time_s) : Moment(time_s, time_s) {}
+    Moment(double time_s, double step_time_s) : ChannelTimes{time_s, step_time_s} {}
 };
 
 /// A node's properties at a moment.
@@ -212,12 +230,12 @@ std::vector<Animations::Pose> Animations::pose_at_rest() const {
     return poses;
 }
 
-std::vector<Animations::Pose> Animations::pose(const Animation& animation, double time_s) const {
+std::vector<Animations::Pose> Animations::pose(const Animation& animation, const Moment& moment) const {
     std::vector<Pose> poses = pose_at_rest();
     for (const AnimationChannel& channel : animation.channels) {
         if (!is_of_node(channel)) continue;
         Pose& pose = poses[size_t(channel.node)];
-        const Eigen::VectorXd value = sample(channel, time_s);
+        const Eigen::VectorXd value = sample(channel, moment.of(channel));
         switch (channel.property) {
             case AnimatedProperty::translation:
                 pose.translation = value;
@@ -249,28 +267,59 @@ double Animations::time_in(size_t index, double time_s, bool loop) const {
         throw ArgumentError(fmt::format("animation: expected a finite time, got {}", time_s));
     if (!loop || !(duration > 0)) return time_s;
     const double turns = std::floor(time_s / duration), within = time_s - duration * turns;
-    // Keys are floats: 2.1 s is not exactly where the animation ends that lasts as long.
-    return turns >= 1 && within <= 1e-6 * duration ? duration : within;
+    return turns >= 1 && within <= same_time * duration ? duration : within;
 }
 
-std::vector<Animations::Pose> Animations::pose_at(size_t index, double time_s, bool loop) const {
-    const double time = time_in(index, time_s, loop);
-    return pose(rig_.animations[index], time);
+Animations::Moment Animations::moment(size_t index, double time_s, bool loop) const {
+    return Moment(time_in(index, time_s, loop));
 }
 
-std::vector<std::pair<Mesh, Eigen::Affine3d>> Animations::motion(size_t index, double from_s, double to_s,
-                                                                 bool loop) const {
-    const std::vector<Pose> from = pose_at(index, from_s, loop), to = pose_at(index, to_s, loop);
-    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion;
+Animations::Moment Animations::moment_before(size_t index, double from_s, double to_s, bool loop) const {
+    const double end = time_in(index, to_s, loop);
+    if (!loop) return {time_in(index, from_s, loop), end};
+    const double begin = end - (to_s - time_in(index, from_s, false));
+    return {std::clamp(begin, 0.0, std::max(duration_s(index), 0.0)), end};
+}
+
+MovedMeshes Animations::moved_between(const std::vector<Pose>& from, const std::vector<Pose>& to) const {
+    MovedMeshes moved;
     for (size_t i = 0; i < rig_.nodes.size(); ++i) {
         const AnimationNode& node = rig_.nodes[i];
         if (!node.mesh || node.matrix) continue;
         const Eigen::Affine3d end = to[i].matrix();
         // What is scaled to nothing is nowhere.
         if (is_flat(end)) continue;
-        motion.emplace_back(*node.mesh, end.inverse(Eigen::Affine) * from[i].matrix());
+        const Eigen::Affine3d begin = from[i].matrix();
+        // What rests does so exactly.
+        moved.emplace_back(*node.mesh, begin.matrix() == end.matrix() ? Eigen::Affine3d::Identity()
+                                                                      : end.inverse(Eigen::Affine) * begin);
     }
-    return motion;
+    return moved;
+}
+
+MovedMeshes Animations::motion(size_t index, double from_s, double to_s, bool loop) const {
+    const Moment begin = moment_before(index, from_s, to_s, loop), end = moment(index, to_s, loop);
+    const Animation& animation = rig_.animations[index];
+    return moved_between(pose(animation, begin), pose(animation, end));
+}
+
+MovedMeshes Animations::jumps(size_t index, double from_s, double to_s, bool loop) const {
+    const Moment begin = moment_before(index, from_s, to_s, loop);
+    Moment was = moment(index, from_s, loop);
+    // It did not go around.
+    if (std::abs(was.time_s - begin.time_s) <= same_time * duration_s(index)) was.time_s = begin.time_s;
+    const Animation& animation = rig_.animations[index];
+    const std::vector<Pose> from = pose(animation, begin), before = pose(animation, was);
+    std::vector<const void*> jumped;
+    for (size_t i = 0; i < rig_.nodes.size(); ++i)
+        if (rig_.nodes[i].mesh && from[i].matrix().matrix() != before[i].matrix().matrix())
+            jumped.push_back(rig_.nodes[i].mesh->identity());
+    if (jumped.empty()) return {};
+    MovedMeshes moved = moved_between(from, pose(animation, moment(index, to_s, loop)));
+    std::erase_if(moved, [&](const auto& mesh) {
+        return std::ranges::find(jumped, mesh.first.identity()) == jumped.end();
+    });
+    return moved;
 }
 
 std::vector<Eigen::Affine3d> Animations::world_poses(const std::vector<Pose>& poses) const {
@@ -296,12 +345,11 @@ bool Animations::is_moved(int node) const {
 
 template <class Value>
 std::map<std::string, Value> Animations::placed(const std::vector<AnimatedItem<Value>>& items,
-                                                AnimatedProperty property, size_t index, double time_s,
-                                                bool loop) const {
-    const std::vector<Pose> poses = pose_at(index, time_s, loop);
+                                                AnimatedProperty property, size_t index,
+                                                const Moment& moment) const {
+    const std::vector<Pose> poses = pose(rig_.animations[index], moment);
     const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
-    const auto parameters =
-        parameters_at(items, property, rig_.animations[index], time_in(index, time_s, loop));
+    const auto parameters = parameters_at(items, property, rig_.animations[index], moment);
     const auto changes = [&](size_t item) {
         return std::ranges::any_of(rig_.animations, [&](const Animation& animation) {
             return std::ranges::any_of(animation.channels, [&](const AnimationChannel& channel) {
@@ -322,15 +370,21 @@ std::map<std::string, Value> Animations::placed(const std::vector<AnimatedItem<V
 }
 
 std::map<std::string, Light> Animations::lights(size_t index, double time_s, bool loop) const {
-    return placed(rig_.lights, AnimatedProperty::light, index, time_s, loop);
+    return placed(rig_.lights, AnimatedProperty::light, index, moment(index, time_s, loop));
 }
 
 std::map<std::string, Camera> Animations::cameras(size_t index, double time_s, bool loop) const {
-    return placed(rig_.cameras, AnimatedProperty::camera, index, time_s, loop);
+    return placed(rig_.cameras, AnimatedProperty::camera, index, moment(index, time_s, loop));
+}
+
+std::map<std::string, Camera> Animations::cameras_before(size_t index, double from_s, double to_s,
+                                                         bool loop) const {
+    return placed(rig_.cameras, AnimatedProperty::camera, index, moment_before(index, from_s, to_s, loop));
 }
 
 void Animations::apply(size_t index, double time_s, bool loop) {
-    const std::vector<Pose> poses = pose_at(index, time_s, loop);
+    const Moment now = moment(index, time_s, loop);
+    const std::vector<Pose> poses = pose(rig_.animations[index], now);
     const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
     for (const size_t i : order_) {
         AnimationNode& node = rig_.nodes[i];
@@ -338,7 +392,7 @@ void Animations::apply(size_t index, double time_s, bool loop) {
         put_pose(i, poses[i]);
         if (poses[i].visible) show(*node.mesh, *poses[i].visible);
     }
-    put_materials(rig_.animations[index], time_in(index, time_s, loop));
+    put_materials(rig_.animations[index], now);
     for (const size_t i : order_)
         if (rig_.nodes[i].mesh && !rig_.nodes[i].deformation.empty()) put_vertices(i, poses, T_world_nodes);
 }
@@ -375,8 +429,8 @@ void Animations::put_at_rest() {
     }
 }
 
-void Animations::put_materials(const Animation& animation, double time_s) {
-    auto parameters = parameters_at(rig_.materials, AnimatedProperty::material, animation, time_s);
+void Animations::put_materials(const Animation& animation, const Moment& moment) {
+    auto parameters = parameters_at(rig_.materials, AnimatedProperty::material, animation, moment);
     const std::scoped_lock lock(put_materials_->mutex);
     for (size_t i = 0; i < parameters.size(); ++i) {
         std::vector<double>& put = put_materials_->parameters[i];

@@ -1,6 +1,8 @@
 #include "easypbr/scene/motion.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace easypbr {
 namespace {
@@ -21,6 +23,26 @@ struct Turned {
         Eigen::Affine3d(linear).computeRotationScaling(&rotation, &stretch);
     }
 };
+
+/// How what hangs from a node goes with it, in the world.
+struct Carried {
+    Eigen::Affine3d from_now = Eigen::Affine3d::Identity();  ///< from where it is to where it was
+    std::optional<Eigen::Affine3d> replaced;  ///< from where it was known to have been; none: it was there
+};
+
+/// Where there is no inverse: `otherwise`.
+Eigen::Affine3d change(const Eigen::Affine3d& from, const Eigen::Affine3d& to,
+                       const Eigen::Affine3d& otherwise) {
+    if (!(std::abs(from.linear().determinant()) >= 1e-30)) return otherwise;
+    return to * from.inverse(Eigen::Affine);
+}
+
+/// From where a mesh is to where it was: it does not depend on the scene's origin.
+Eigen::Affine3d change_in_world(const Mesh& mesh, const Eigen::Affine3d& moved) {
+    if (moved.matrix() == Eigen::Matrix4d::Identity()) return moved;
+    const Eigen::Affine3d now = mesh.T_world_mesh();
+    return change(now, now * moved, Eigen::Affine3d::Identity());
+}
 
 Mat3d linear_between(const Mat3d& from, const Mat3d& to, double t) {
     const double from_sign = from.determinant(), to_sign = to.determinant();
@@ -49,6 +71,28 @@ std::vector<Eigen::Affine3d> Motion::poses_before(const SceneSnapshot& scene) co
         before.push_back(known == poses.end() ? scene.objects[i].T_world_mesh : known->second);
     }
     return before;
+}
+
+void Motion::replace(const SceneSnapshot& scene, const MovedMeshes& moved) {
+    const std::vector<ObjectKey> keys = object_keys(scene);
+    const std::vector<Eigen::Affine3d> known = poses_before(scene);
+    std::map<const void*, Carried> carried;  // by children
+    for (size_t i = 0; i < keys.size(); ++i) {
+        const SceneSnapshot::Object& object = scene.objects[i];
+        const auto parent = carried.find(object.node);
+        const Carried above = parent == carried.end() ? Carried() : parent->second;
+        const auto own =
+            std::ranges::find(moved, object.node, [](const auto& mesh) { return mesh.first.identity(); });
+        Eigen::Affine3d before = above.replaced ? *above.replaced * known[i] : known[i];
+        if (own != moved.end()) {
+            before = above.from_now * change_in_world(own->first, own->second) * object.T_world_mesh;
+        }
+        Carried below{change(object.T_world_mesh, before, above.from_now), {}};
+        if (own != moved.end() || above.replaced)
+            below.replaced = change(known[i], before, above.replaced.value_or(Eigen::Affine3d::Identity()));
+        for (const Mesh& child : object.mesh->children) carried[child.identity()] = below;
+        poses[keys[i]] = before;
+    }
 }
 
 Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, double t) {

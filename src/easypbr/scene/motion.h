@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "easypbr/scene/animation.h"
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/object_key.h"
 #include "easypbr/scene/scene.h"
@@ -20,6 +21,9 @@ struct Motion {
 
     /// Where the objects of a scene were, in their order. What was not there has not moved.
     std::vector<Eigen::Affine3d> poses_before(const SceneSnapshot& scene) const;
+    /// These meshes moved so, in their parents' frames, whatever is known of before; what hangs from them
+    /// goes with them. `scene`: where all is now.
+    void replace(const SceneSnapshot& scene, const MovedMeshes& moved);
 };
 
 /// The pose at time t between two others, at 0 the first: the rotation turns evenly about one axis (slerp),

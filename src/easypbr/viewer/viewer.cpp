@@ -92,6 +92,7 @@ struct Viewer::Parts {
 
     explicit Parts(const Scene& scene) : session(scene) {
         clock.on_tick = [this] { player.update(); };
+        player.on_jump = [this](const MovedMeshes& moved) { session.replace_motion(moved); };
     }
 };
 
