@@ -15,6 +15,7 @@ class Player : public testing::Test {
     Player() {
         clock_.set_fixed_step(0.5);
         clock_.on_tick = [this] { player_.update(); };
+        clock_.on_set = [this] { player_.follow_set_clock(); };
         AnimationNode node;
         node.mesh = box_;
         Animation rest = slide("rest");
@@ -105,6 +106,57 @@ TEST_F(Player, SpeedAndLoop) {
     EXPECT_TRUE(player_.is_playing());
     clock_.tick();
     EXPECT_NEAR(x(), 1, 1e-12);  // 0.5 s at four times the speed, from the start
+}
+
+TEST_F(Player, BackwardsWithoutALoopItPlaysFromItsEnd) {
+    player_.add("box", animations_);
+    player_.set_loop(false);
+    player_.set_speed(-2);
+    player_.play(0);
+    EXPECT_TRUE(player_.is_playing());
+    EXPECT_NEAR(x(), 2, 1e-12);
+    clock_.tick();
+    EXPECT_NEAR(x(), 1.5, 1e-12);
+    for (int i = 0; i < 9; ++i) clock_.tick();
+    EXPECT_FALSE(player_.is_playing());
+    EXPECT_EQ(player_.time(), 0) << "not -6 s";
+}
+
+TEST_F(Player, WithoutALoopTheTimeEndsWithIt) {
+    player_.add("box", animations_);
+    player_.play(0);
+    for (int i = 0; i < 9; ++i) clock_.tick();
+    EXPECT_DOUBLE_EQ(player_.time(), 4.5);
+    EXPECT_DOUBLE_EQ(player_.shown_time(), 0.5);
+    player_.set_loop(false);
+    EXPECT_DOUBLE_EQ(player_.time(), 0.5) << "where it is shown";
+    for (int i = 0; i < 9; ++i) clock_.tick();
+    EXPECT_EQ(player_.time(), 4);
+    EXPECT_EQ(player_.shown_time(), 4);
+}
+
+TEST_F(Player, ShowsTheEndAfterAWholeDuration) {
+    player_.add("box", animations_);
+    player_.play(0);
+    player_.seek(8);
+    EXPECT_EQ(player_.shown_time(), 4);
+    player_.seek(0);
+    EXPECT_EQ(player_.shown_time(), 0);
+    player_.seek(-1);
+    EXPECT_DOUBLE_EQ(player_.shown_time(), 3);
+}
+
+TEST_F(Player, ASetClockSetsItBackToWhereItBeganAtMost) {
+    clock_.set_time(2);
+    player_.add("box", animations_);
+    player_.play(0);
+    for (int i = 0; i < 4; ++i) clock_.tick();
+    clock_.set_time(3);
+    EXPECT_DOUBLE_EQ(player_.time(), 1);
+    clock_.set_time(0);
+    EXPECT_EQ(player_.time(), 0) << "it began to play at 2 s";
+    clock_.tick();
+    EXPECT_NEAR(x(), 0.25, 1e-12);
 }
 
 TEST_F(Player, TellsHowThingsMoved) {

@@ -195,6 +195,28 @@ def test_an_animation_plays_in_a_recording(tmp_path):
     assert view.animation_time == 0.25
     view.play()
     assert view.is_playing
+
+    def after_a_frame():
+        with view.recorder.start(tmp_path / "next_%02d.png", fps=8):
+            view.recorder.add_frame()
+        return view.animation_time
+
+    assert after_a_frame() == pytest.approx(0.5)  # still at double speed
+    view.play(speed=1, loop=False)
+    view.pause()
+    view.play()
+    assert after_a_frame() == pytest.approx(0.625)
+    # What is wrong changes nothing.
+    with pytest.raises(easypbr.UnknownNameError):
+        view.play(file.animations, "slid", speed=4, loop=True)
+    with pytest.raises(easypbr.ArgumentError):
+        view.play(speed=float("nan"), loop=True)
+    assert after_a_frame() == pytest.approx(0.75)
+    view.animation_time = 100
+    assert view.animation_time < 100 and not view.is_playing  # it rests at its end
+    view.time = 0
+    view.play(file.animations, "slide", speed=-1, loop=False)
+    assert view.is_playing and view.animation_time > 0
     for wrong in (lambda: view.play(file.animations, "slid"), lambda: view.play(file.animations, 3)):
         with pytest.raises(easypbr.UnknownNameError):
             wrong()

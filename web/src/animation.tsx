@@ -7,7 +7,7 @@ export function AnimationBar({ connection }: { connection: Connection }) {
   const animation = useStore((state) => state.animation);
   const controls = useStore((state) => state.control.controls);
   if (!animation) return null;
-  const time = animation.duration > 0 ? ((animation.time % animation.duration) + animation.duration) % animation.duration : 0;
+  const time = animation.time;
   const send = (change: { number?: number; plays?: boolean; time?: number; speed?: number }) =>
     connection.send({
       kind: "animate",

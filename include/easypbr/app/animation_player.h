@@ -24,7 +24,7 @@ void put_lights(Scene scene, const std::string& file, const Animations& animatio
                 double time_s, bool loop = true);
 
 /// One animation plays at a time. Its time follows the clock's: that of a recording, of a fixed step, or real
-/// time; setting the clock's time back sets the animation back.
+/// time; setting the clock's time back sets the animation back, at most to where it began to play.
 class AnimationPlayer {
   public:
     /// The clock must outlive the player.
@@ -47,7 +47,8 @@ class AnimationPlayer {
     size_t current() const { return current_; }
     double duration_s() const;
 
-    /// Plays animation `number` of names() from its start. Throws NameError for a number there is not.
+    /// Plays animation `number` of names() from its start, backwards without a loop from its end. Throws
+    /// NameError for a number there is not.
     void play(size_t number);
     /// By the file's name and the animation's name or number. Throws NameError with the nearest name.
     void play(const std::string& file, const std::string& animation);
@@ -58,8 +59,10 @@ class AnimationPlayer {
     /// Neither paused nor, without a loop, at its end.
     bool is_playing() const { return playing_ && !has_ended(); }
 
-    /// Seconds of the animation, not yet wound around.
+    /// Seconds of the animation, not yet wound around; without a loop within its duration.
     double time() const;
+    /// The time within its duration that is shown, see Animations::time_in().
+    double shown_time() const;
     /// Puts the meshes where they are at a time; it then goes on from there. Throws ArgumentError when the
     /// time is not finite or no animation is known.
     void seek(double time_s);
@@ -67,7 +70,7 @@ class AnimationPlayer {
     void set_speed(double speed);
     double speed() const { return speed_; }
     /// Whether it goes around; else it rests at its end.
-    void set_loop(bool loop) { loop_ = loop; }
+    void set_loop(bool loop);
     bool loops() const { return loop_; }
 
     /// How the animation's meshes moved in the `seconds` of the clock before now, playing or not; see
@@ -76,6 +79,8 @@ class AnimationPlayer {
 
     /// After the clock's tick: puts the meshes where they are now, while it plays.
     void update();
+    /// After the clock's time was set.
+    void follow_set_clock();
     /// Called when meshes are put where they jumped to, with the motion they have in place of that: where an
     /// animation begins or goes around, and at steps; see Animations::jumps().
     std::function<void(const MovedMeshes&)> on_jump;
@@ -87,6 +92,7 @@ class AnimationPlayer {
     };
     void apply();
     bool has_ended() const;
+    double start_s() const;
     void rebuild_names();
 
     const Clock& clock_;

@@ -22,8 +22,9 @@ class Clock {
     void set_fixed_step(std::optional<double> step_s);
     std::optional<double> fixed_step() const { return step_; }
 
-    /// Throws ArgumentError when the time is not finite.
+    /// Throws ArgumentError when the time is not finite. `on_set` is called then.
     void set_time(double time_s);
+    std::function<void()> on_set;
 
     /// A new frame begins; `on_tick` is called then.
     void tick();

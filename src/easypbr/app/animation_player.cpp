@@ -100,7 +100,7 @@ void AnimationPlayer::play(size_t number) {
         throw NameError(fmt::format("no animation {}, there are {}", number, places_.size()));
     current_ = number;
     applied_.reset();
-    seek(0);
+    seek(start_s());
     playing_ = true;
 }
 
@@ -118,9 +118,13 @@ void AnimationPlayer::play(const std::string& file, const std::string& animation
 
 void AnimationPlayer::resume() {
     if (empty()) throw ArgumentError("there is no animation to play: give play() those of load_scene()");
-    base_ = has_ended() ? (speed_ < 0 ? duration_s() : 0) : time();
+    base_ = has_ended() ? start_s() : time();
     clock_base_ = clock_.time();
     playing_ = true;
+}
+
+double AnimationPlayer::start_s() const {
+    return !loop_ && speed_ < 0 ? duration_s() : 0;
 }
 
 bool AnimationPlayer::has_ended() const {
@@ -133,7 +137,14 @@ void AnimationPlayer::pause() {
 }
 
 double AnimationPlayer::time() const {
-    return playing_ ? base_ + speed_ * (clock_.time() - clock_base_) : base_;
+    const double time_s = playing_ ? base_ + speed_ * (clock_.time() - clock_base_) : base_;
+    return loop_ ? time_s : std::clamp(time_s, 0.0, duration_s());
+}
+
+double AnimationPlayer::shown_time() const {
+    if (empty()) return 0;
+    const Place place = places_[current_];
+    return files_[place.file].animations.time_in(place.index, time(), loop_);
 }
 
 void AnimationPlayer::seek(double time_s) {
@@ -151,6 +162,17 @@ void AnimationPlayer::set_speed(double speed) {
     base_ = time();
     clock_base_ = clock_.time();
     speed_ = speed;
+}
+
+void AnimationPlayer::set_loop(bool loop) {
+    // What goes around no more goes on from where it is shown.
+    base_ = loop ? time() : shown_time();
+    clock_base_ = clock_.time();
+    loop_ = loop;
+}
+
+void AnimationPlayer::follow_set_clock() {
+    clock_base_ = std::min(clock_base_, clock_.time());
 }
 
 MovedMeshes AnimationPlayer::motion(double seconds) const {

@@ -24,6 +24,7 @@ void Clock::set_time(double time_s) {
     steps_ = 0;
     delta_ = 0;
     last_ns_.reset();
+    if (on_set) on_set();
 }
 
 void Clock::tick() {

@@ -1,6 +1,6 @@
 #include <imgui.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
@@ -31,9 +31,7 @@ void time_row(GuiState& state, app::AnimationPlayer& player) {
     }
     ImGui::SameLine();
     const double duration = player.duration_s();
-    double shown = player.time();
-    if (player.loops() && duration > 0) shown -= duration * std::floor(shown / duration);
-    float time = float(std::clamp(shown, 0.0, duration));
+    float time = float(std::clamp(player.shown_time(), 0.0, duration));
     ImGui::SetNextItemWidth(-FLT_MIN);
     if (ImGui::SliderFloat("##time", &time, 0, float(duration), "%.2f s", ImGuiSliderFlags_AlwaysClamp)) {
         player.pause();

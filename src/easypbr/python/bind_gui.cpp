@@ -195,14 +195,17 @@ void bind_player(ViewerClass& viewer) {
         .def("play",
              [](SharedViewer& self, const Animations& animations, const std::string& animation, double speed,
                 bool loop) { self.run([&](Viewer& v) { v.play(animations, animation, speed, loop); }); })
-        .def("resume",
-             [](SharedViewer& self, double speed, bool loop) {
-                 with_player(self, [&](AnimationPlayer& player) {
-                     player.resume();
-                     player.set_speed(speed);
-                     player.set_loop(loop);
-                 });
-             })
+        .def(
+            "resume",
+            [](SharedViewer& self, std::optional<double> speed, std::optional<bool> loop) {
+                with_player(self, [&](AnimationPlayer& player) {
+                    if (player.empty()) return player.resume();  // which throws
+                    if (speed) player.set_speed(*speed);
+                    if (loop) player.set_loop(*loop);
+                    player.resume();
+                });
+            },
+            nb::arg("speed").none(), nb::arg("loop").none())
         .def("pause", [](SharedViewer& self) { self.run([](Viewer& v) { v.pause(); }); })
         .def("is_playing",
              [](SharedViewer& self) {

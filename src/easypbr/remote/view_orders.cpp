@@ -26,6 +26,7 @@ View::Own::Own(const Scene& scene, const Settings& settings, ViewClients clients
       stills([clients](EncodeJob job) { clients.publish(encode(std::move(job))); }) {
     session.replace_settings(settings);
     clock.on_tick = [this] { player.update(); };
+    clock.on_set = [this] { player.follow_set_clock(); };
     player.on_jump = [this](const MovedMeshes& moved) { session.replace_motion(moved); };
 }
 
@@ -72,7 +73,7 @@ std::string View::Own::scene_message() {
 
 std::string View::Own::animation_message() const {
     if (player.empty()) return animation_text({}, 0, false, 0, 0, 1);
-    return animation_text(player.names(), player.current(), player.is_playing(), player.time(),
+    return animation_text(player.names(), player.current(), player.is_playing(), player.shown_time(),
                           player.duration_s(), player.speed());
 }
 

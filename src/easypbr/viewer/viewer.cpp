@@ -92,6 +92,7 @@ struct Viewer::Parts {
 
     explicit Parts(const Scene& scene) : session(scene) {
         clock.on_tick = [this] { player.update(); };
+        clock.on_set = [this] { player.follow_set_clock(); };
         player.on_jump = [this](const MovedMeshes& moved) { session.replace_motion(moved); };
     }
 };
@@ -381,6 +382,7 @@ void Viewer::remove_light(const std::string& name) {
 }
 
 void Viewer::play(const Animations& animations, const std::string& animation, double speed, bool loop) {
+    animations.find(animation);  // Throws before anything is changed.
     parts_->player.set_speed(speed);
     parts_->player.set_loop(loop);
     parts_->player.add("", animations, scene());
