@@ -59,7 +59,7 @@ class Recorder:
 
     def add_frame(self, picture: ArrayLike | None = None) -> None:
         """Renders the scene as the next frame and advances view.time. A `picture` of the recording's size is
-        added unchanged."""
+        added in place of that; videos, PNG and JPEG get floats as sRGB."""
         self._handle.add_frame(picture)
 
     def stop(self) -> int:

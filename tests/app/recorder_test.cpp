@@ -220,6 +220,24 @@ TEST_F(Recordings, AreFinishedByTheRecordersEndAndByExceptions) {
     EXPECT_FALSE(clock_.fixed_step());
 }
 
+// Linear floats are written as sRGB: 0.2158605 is ((128 / 255 + 0.055) / 1.055)^2.4.
+TEST_F(Recordings, TakeFloatsForVideosAsForPictures) {
+    Image linear(48, 32, 3, PixelType::f32), bytes(48, 32, 3, PixelType::u8);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 48; ++x)
+            for (int c = 0; c < 3; ++c) {
+                linear.at<float>(x, y)[c] = 0.2158605f;
+                bytes.at<uint8_t>(x, y)[c] = 128;
+            }
+    for (const auto& [name, picture] : {std::pair("floats.gif", &linear), std::pair("bytes.gif", &bytes)}) {
+        recorder_.start(folder_ / name);
+        for (int i = 0; i < 2; ++i) recorder_.add_frame(*picture);
+        EXPECT_EQ(recorder_.stop(), 2);
+    }
+    const FileBytes a(folder_ / "floats.gif"), b(folder_ / "bytes.gif");
+    EXPECT_EQ(a.text(), b.text());
+}
+
 TEST_F(Recordings, SayWhatCannotBeRecorded) {
     EXPECT_NE(
         error_of(folder_ / "one.png").find("one picture cannot hold many frames; expected a video (gif"),

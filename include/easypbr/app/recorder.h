@@ -55,7 +55,7 @@ class Recorder {
     /// many steps. Throws ArgumentError when nothing is recorded; what writing an earlier frame threw,
     /// whereupon the recording ends.
     void add_frame(int times = 1);
-    /// A picture as the next frame: of the recording's size, u8 with 3 or 4 channels for a video.
+    /// A picture as the next frame, of the recording's size. Videos, PNG and JPEG get floats as sRGB.
     void add_frame(Image picture);
 
     /// Calls `watcher` with every picture of the recording that is going on, once it has been read, before it

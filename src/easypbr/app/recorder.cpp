@@ -13,6 +13,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/step_progress.h"
+#include "easypbr/io/video/video.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
@@ -125,6 +126,7 @@ void Recorder::add_frame(Image picture) {
     if (picture.width() != size.x() || picture.height() != size.y())
         throw ArgumentError(fmt::format("{}: expected frames of {}x{}, got {}x{}", recording.path.string(),
                                         size.x(), size.y(), picture.width(), picture.height()));
+    if (io::is_video(recording.path)) picture = to_u8(picture);
     add_guarded([&] {
         recording.ring->drain();
         recording.queue->push(picture.channels() == 4 ? std::move(picture) : with_channels(picture, 4));
