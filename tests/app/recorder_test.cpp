@@ -296,6 +296,42 @@ TEST_F(Recordings, LeaveNoHalfVideo) {
     }
 }
 
+// What was recorded before stays until a new recording is whole.
+TEST_F(Recordings, ReplaceAVideoWhenTheyAreWhole) {
+    for (const char* name : {"a.mp4", "a.mkv", "a.webm", "a.gif"}) {
+        const fs::path file = folder_ / name;
+        const fs::path part = folder_ / (std::string("a.part") + fs::path(name).extension().string());
+        const auto text = [&] { return std::string(FileBytes(file).text()); };
+        write_file(file, std::string_view("the old one"));
+        recorder_.start(file);
+        recorder_.stop();
+        EXPECT_EQ(text(), "the old one") << "no frame: " << name;
+        recorder_.start(file);
+        recorder_.add_frame();
+        EXPECT_TRUE(fs::exists(part)) << name;
+        {
+            const FileLimit full(200);
+            EXPECT_THROW(
+                {
+                    for (int i = 0; i < 100; ++i) recorder_.add_frame();
+                    recorder_.stop();
+                },
+                FileError)
+                << name;
+        }
+        EXPECT_EQ(text(), "the old one") << "a full disk: " << name;
+        EXPECT_FALSE(fs::exists(part)) << name;
+        const fs::path link = folder_ / (std::string("link") + file.extension().string());
+        fs::create_symlink(file, link);
+        recorder_.start(link);
+        for (int i = 0; i < 3; ++i) recorder_.add_frame();
+        EXPECT_EQ(recorder_.stop(), 3);
+        EXPECT_GT(fs::file_size(file), 100u) << name;
+        EXPECT_TRUE(fs::is_symlink(link));
+        EXPECT_FALSE(fs::exists(part)) << name;
+    }
+}
+
 TEST_F(Recordings, ReportTheTimeLeft) {
     std::vector<std::string> said;
     set_progress_sink([&](std::string_view what, double part) {

@@ -230,12 +230,13 @@ def test_a_program_that_does_not_work_is_named(without_module, box, tmp_path):
     assert f"{tmp_path}/ffmpeg does not work: it lists no encoders" in done.stderr
 
 
-def killed_recording(environment, box, folder, name):
-    """Kills a recording for good while it runs."""
+def killed_recording(environment, box, folder, name, written=None):
+    """Kills a recording for good while it runs; `written`: the file that grows."""
+    growing = folder / (written or name)
     command = [BINARY, "render", box, "--turntable", "2000", "-o", folder / name, *LOOK]
     process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 60
-    while not (folder / name).exists() or (folder / name).stat().st_size < 60_000:
+    while not growing.exists() or growing.stat().st_size < 60_000:
         assert time.monotonic() < deadline and process.poll() is None
         time.sleep(0.02)
     process.send_signal(signal.SIGKILL)
@@ -246,6 +247,13 @@ def killed_recording(environment, box, folder, name):
 def test_a_killed_recording_can_be_played(environment, box, tmp_path, name):
     killed_recording(environment, box, tmp_path, name)
     assert 20 < int(probe(tmp_path / name)["nb_read_frames"]) < 2000
+
+
+def test_a_killed_recording_leaves_the_video_before(environment, box, tmp_path):
+    (tmp_path / "a.mp4").write_bytes(b"the old one")
+    killed_recording(environment, box, tmp_path, "a.mp4", "a.part.mp4")
+    assert (tmp_path / "a.mp4").read_bytes() == b"the old one"
+    assert 20 < int(probe(tmp_path / "a.part.mp4")["nb_read_frames"]) < 2000
 
 
 def test_a_full_disk_is_an_error(environment, box, tmp_path):

@@ -32,16 +32,6 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
     }
 }
 
-/// Where a file is really written: a link stays a link, also one that leads to no file yet.
-fs::path real_target(fs::path path) {
-    std::error_code ignored;
-    constexpr int most_links = 40;  // as many as Linux follows
-    for (int i = 0; i < most_links && fs::is_symlink(path, ignored) && !fs::exists(path, ignored); ++i)
-        path = path.parent_path() / fs::read_symlink(path, ignored);
-    const fs::path real = fs::weakly_canonical(path, ignored);
-    return real.empty() ? path : real;
-}
-
 /// A file that is renamed over a device or a pipe would take its place.
 void require_no_special_file(const fs::path& target) {
     std::error_code ignored;
@@ -56,7 +46,25 @@ void require_writable(const fs::path& target) {
     if (target.filename().empty() || fs::is_directory(target)) fail_write(target, EISDIR);
 }
 
+void rename_to(const fs::path& target, const fs::path& from) {
+    if (::rename(from.c_str(), target.c_str()) != 0) fail_write(target, errno);
+}
+
 }  // namespace
+
+fs::path real_target(fs::path path) {
+    std::error_code ignored;
+    constexpr int most_links = 40;  // as many as Linux follows
+    for (int i = 0; i < most_links && fs::is_symlink(path, ignored) && !fs::exists(path, ignored); ++i)
+        path = path.parent_path() / fs::read_symlink(path, ignored);
+    const fs::path real = fs::weakly_canonical(path, ignored);
+    return real.empty() ? path : real;
+}
+
+void replace_file(const fs::path& target, const fs::path& by) {
+    require_writable(target);
+    rename_to(target, by);
+}
 
 FileSet::~FileSet() {
     for (const File& file : files_) ::unlink(file.beside.c_str());
@@ -79,7 +87,7 @@ void FileSet::commit() {
     for (const File& file : files_) require_writable(file.target);
     while (!files_.empty()) {
         const File& file = files_.front();
-        if (::rename(file.beside.c_str(), file.target.c_str()) != 0) fail_write(file.target, errno);
+        rename_to(file.target, file.beside);
         files_.erase(files_.begin());
     }
 }

@@ -33,4 +33,10 @@ class FileSet {
     std::vector<File> files_;
 };
 
+/// Where a file of this name really lies: a link is followed, also one that leads to no file yet.
+std::filesystem::path real_target(std::filesystem::path path);
+
+/// Renames a file that was written whole. Throws FileError; `target` is then as it was.
+void replace_file(const std::filesystem::path& target, const std::filesystem::path& by);
+
 }  // namespace easypbr

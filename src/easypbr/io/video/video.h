@@ -38,7 +38,8 @@ class VideoWriter {
 /// libeasypbr.so and then where the system searches) or, where that or FFmpeg's libraries are missing, by the
 /// program ffmpeg, which finishes the file when this process is killed. Throws FormatError when both are
 /// missing, ArgumentError for a codec that is not there (naming those that are), a size or a rate out of
-/// range, FileError when the file cannot be written.
+/// range, FileError when the file cannot be written. A file that is there already is replaced by finish(),
+/// when the video is whole: until then the video is written beside it, "clip.part.mp4" beside "clip.mp4".
 std::unique_ptr<VideoWriter> open_video(const std::filesystem::path& path, const VideoOptions& options);
 
 /// Throws as open_video() does for a codec or an FFmpeg that is missing; writes nothing.

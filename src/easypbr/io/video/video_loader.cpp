@@ -4,6 +4,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/file_set.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/source/module_loader.h"
 #include "easypbr/io/video/encoders.h"
 #include "easypbr/io/video/ffmpeg/module.h"
@@ -51,6 +53,50 @@ fs::path require_program(const fs::path& path) {
                                   how_to_get()));
 }
 
+std::unique_ptr<VideoWriter> open_at(const fs::path& path, const VideoOptions& options) {
+    if (!ffmpeg_module().works()) return open_video_by_program(require_program(path), path, options);
+    std::unique_ptr<VideoWriter> writer;
+    ffmpeg_module().open(path, options, writer);
+    return writer;
+}
+
+/// "clip.part.mp4" beside "clip.mp4": by its extension a video can be played.
+fs::path part_of(const fs::path& target) {
+    fs::path part = target;
+    part.replace_extension(".part" + target.extension().string());
+    return part;
+}
+
+/// A video that takes the place of a file when it is whole.
+class ReplacingVideo final : public VideoWriter {
+  public:
+    ReplacingVideo(const fs::path& target, const VideoOptions& options)
+        : target_(target), part_(part_of(target)), video_(open_at(part_, options)) {}
+
+    ~ReplacingVideo() override {
+        try {
+            finish();
+        } catch (const Error& error) {
+            log_warning(error.what());
+        }
+    }
+
+    void add(const Image& picture) override { video_->add(picture); }
+
+    void finish() override {
+        if (finished_) return;
+        finished_ = true;
+        video_->finish();
+        // What failed, or has no picture, was removed.
+        if (fs::exists(part_)) replace_file(target_, part_);
+    }
+
+  private:
+    fs::path target_, part_;
+    std::unique_ptr<VideoWriter> video_;
+    bool finished_ = false;
+};
+
 }  // namespace
 
 std::vector<std::string> video_extensions() {
@@ -69,10 +115,9 @@ void check_video(const fs::path& path, const std::string& codec) {
 }
 
 std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions& options) {
-    if (!ffmpeg_module().works()) return open_video_by_program(require_program(path), path, options);
-    std::unique_ptr<VideoWriter> writer;
-    ffmpeg_module().open(path, options, writer);
-    return writer;
+    const fs::path target = real_target(path);
+    if (fs::is_regular_file(target)) return std::make_unique<ReplacingVideo>(target, options);
+    return open_at(path, options);
 }
 
 std::unique_ptr<VideoStream> open_video_stream(const VideoStreamOptions& options) {
