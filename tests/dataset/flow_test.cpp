@@ -126,6 +126,36 @@ TEST(Flow, GrazingSurfacesAreNotOccluded) {
     EXPECT_LE(counts.occluded, 3 * 38);
 }
 
+// Nothing tells which points of a mesh are those of another one of its name.
+TEST(Flow, OfOtherArraysIsNone) {
+    const Vec2i size(160, 120);
+    Scene scene;
+    Mesh mesh = moved(make_sphere(0.5f, 64), {0, 0, -4});
+    scene.show(mesh, "ball");
+    app::Session session = plain_session(scene);
+    session.set_camera(opencv_camera(off_centre_K(), size));
+    const app::Moment before = session.moment(size);
+    const Mesh finer = make_sphere(0.5f, 96);
+    mesh.edit([&](MeshData& data) {
+        data.V = finer.V();
+        data.N = finer.N();
+        data.F = finer.F();
+        data.UV = {};
+    });
+    TruthOptions options;
+    options.size = size;
+    options.previous = &before;
+    const GroundTruth now = ground_truth(session, {"flow_backward", "occlusion_backward", "depth"}, options);
+    int seen = 0;
+    for (size_t i = 0; i < size_t(size.prod()); ++i) {
+        if (!(now.layers.at("depth").floats()[i] > 0)) continue;
+        ++seen;
+        EXPECT_TRUE(std::isnan(now.layers.at("flow_backward").floats()[2 * i]));
+        EXPECT_EQ(now.layers.at("occlusion_backward").bytes()[i], 1);
+    }
+    EXPECT_GT(seen, 1000);
+}
+
 // A wall that was 0.9 pixels further to the left: what the first column shows was outside. 0.4 pixels to the
 // left its nearest pixel is the first column still.
 TEST(Flow, OutsideIsWhereTheNearestPixelIs) {

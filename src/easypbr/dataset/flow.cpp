@@ -22,15 +22,19 @@ constexpr double slack = 1.5;
 /// Of single precision, as a part of the depth.
 constexpr double rounding = 1e-4, plane_rounding = 1e-5;
 
-/// An object of this frame in the other one; none when it is not shown there.
+/// An object of this frame in the other one; none when it is not shown there, or with other arrays.
 struct Motion {
     const SceneSnapshot::Object* there = nullptr;
     uint32_t there_number = 0;
-    bool same_faces = false;               ///< vertices correspond, even if they have moved
-    bool same_elements = false;            ///< indices of faces and vertices correspond
+    bool same_faces = false;               ///< vertices correspond, but they have moved
     Eigen::Affine3d T_mesh_cv, T_cv_mesh;  ///< of this frame back to the mesh, and on to the other's camera
     Eigen::Affine3d T_cv_mesh_here, T_mesh_cv_there;  ///< their inverses
 };
+
+/// Whether the indices of faces and vertices correspond: they are told apart by how many there are.
+bool same_elements(const MeshData& a, const MeshData& b) {
+    return a.F.rows() == b.F.rows() && a.V.rows() == b.V.rows();
+}
 
 std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
     std::vector<Motion> all;
@@ -42,16 +46,14 @@ std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
         Motion motion;
         motion.T_cv_mesh_here = cv_from_mesh(now.camera, object);
         motion.T_mesh_cv = inverse_pose(motion.T_cv_mesh_here);
-        if (const auto same = there.find(keys[i]); same != there.end()) {
+        if (const auto same = there.find(keys[i]);
+            same != there.end() && same_elements(*same->second->mesh, *object.mesh)) {
             const SceneSnapshot::Object* const found = same->second;
             motion.there = found;
             motion.there_number = uint32_t(found - other.scene.objects.data()) + 1;
             motion.T_cv_mesh = cv_from_mesh(other.camera, *found);
             motion.T_mesh_cv_there = inverse_pose(motion.T_cv_mesh);
-            motion.same_elements = found->mesh->F.rows() == object.mesh->F.rows() &&
-                                   found->mesh->V.rows() == object.mesh->V.rows();
-            motion.same_faces =
-                motion.same_elements && found->mesh->V.revision() != object.mesh->V.revision();
+            motion.same_faces = found->mesh->V.revision() != object.mesh->V.revision();
         }
         all.push_back(motion);
     }
@@ -147,9 +149,7 @@ bool shows(const Surfaces& other, size_t j, const Surfaces& now, size_t i, const
     if (other.object[j] != motion.there_number) return false;
     const bool flat = is_flat(now, i) && is_flat(other, j);
     const bool is_voxel = flat && !now.on_face(i);
-    if (motion.same_elements && !is_voxel && now.on_face(i) == other.on_face(j) &&
-        now.element[i] == other.element[j])
-        return true;
+    if (!is_voxel && now.on_face(i) == other.on_face(j) && now.element[i] == other.element[j]) return true;
     const Vec3d &p = target.point, q = other.position[j].cast<double>();
     const Vec3d normal =
         normal_of(other, j, *motion.there->mesh, motion.T_cv_mesh, motion.T_mesh_cv_there * q);
