@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <cstring>
+#include <fstream>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "easypbr/core/error.h"
@@ -114,6 +117,50 @@ TEST_F(FileSets, FollowLinksThatLeadToNoFileYet) {
     EXPECT_EQ(text_of("folder/new"), "text");
     // What is written beside the target is none of the folder's own.
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "folder"), {}), 1);
+}
+
+/// Of the FileError that both ways to look at a target throw; empty where one throws none, or another one.
+std::string why_not(const fs::path& target) {
+    std::string why;
+    const std::function<void()> ways[] = {[&] { check_writable(target); },
+                                          [&] { write_file(target, std::string_view("text")); }};
+    for (const auto& way : ways) {
+        try {
+            way();
+            return {};
+        } catch (const FileError& error) {
+            if (!why.empty() && why != error.what()) return {};
+            why = error.what();
+        }
+    }
+    return why;
+}
+
+TEST_F(FileSets, TakeNamesOfAnyLengthThatTheSystemTakes) {
+    const std::string longest(NAME_MAX, 'a');
+    EXPECT_NO_THROW(check_writable(folder_ / longest));
+    write_file(folder_ / longest, std::string_view("text"));
+    EXPECT_EQ(text_of(longest.c_str()), "text");
+    const fs::path longer = folder_ / (longest + 'a');
+    EXPECT_EQ(why_not(longer), "cannot write " + longer.string() + ": " + std::strerror(ENAMETOOLONG));
+}
+
+TEST_F(FileSets, NameLinksThatLeadInALoop) {
+    fs::create_symlink("b", folder_ / "a");
+    fs::create_symlink("a", folder_ / "b");
+    EXPECT_NE(why_not(folder_ / "a").find(std::strerror(ELOOP)), std::string::npos);
+}
+
+// A killed process leaves one, and another with its number comes, as in containers.
+TEST_F(FileSets, PassOverNamesThatAreTaken) {
+    const std::string begin = ".easypbr." + std::to_string(::getpid()) + ".", last = temporary_name();
+    ASSERT_TRUE(last.starts_with(begin) && is_temporary_name(last));
+    const fs::path next =
+        folder_ / (begin + std::to_string(std::stoul(last.substr(begin.size())) + 1) + ".tmp");
+    std::ofstream(next) << "left";
+    write_file(folder_ / "new", std::string_view("text"));
+    EXPECT_EQ(text_of("new"), "text");
+    EXPECT_EQ(text_of(next.filename().c_str()), "left");
 }
 
 }  // namespace

@@ -298,7 +298,7 @@ TEST_F(Cache, LeavesFilesOfOthersAlone) {
     fs::create_directory(folder / key_of(7));
     fs::create_symlink(folder / "sums.txt", folder / key_of(8));
     // A killed process leaves a part of a blob; another one may be writing.
-    const std::string old = "." + key_of(0) + ".123.0.tmp", young = "." + key_of(1) + ".124.0.tmp";
+    const std::string old = ".easypbr.123.0.tmp", young = ".easypbr.124.0.tmp";
     for (const std::string& name : {old, young}) write_file(folder / name, std::string_view("part"));
     fs::last_write_time(folder / old, fs::file_time_type::clock::now() - std::chrono::hours(2));
     EXPECT_EQ(cache_use().entries, 1u);

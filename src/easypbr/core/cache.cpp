@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/file_set.h"
 #include "easypbr/core/folder.h"
 #include "easypbr/core/hash.h"
 
@@ -32,12 +33,6 @@ bool is_hash(std::string_view text) {
 bool is_key(std::string_view name) {
     const size_t dash = name.rfind('-');
     return dash != name.npos && dash > 0 && name[0] != '.' && is_hash(name.substr(dash + 1));
-}
-
-/// Whether a name is that of a blob being written: ".KEY.PROCESS.NUMBER.tmp".
-bool is_temporary(std::string_view name) {
-    if (!name.starts_with('.') || !name.ends_with(".tmp")) return false;
-    return is_key(name.substr(1, name.find('.', 1) - 1));
 }
 
 struct Entry {
@@ -83,7 +78,7 @@ void remove_abandoned() {
     const auto before = fs::file_time_type::clock::now() - abandoned;
     for_each_file([&](const std::string& name, const Entry& entry) {
         std::error_code ignored;
-        if (is_temporary(name) && entry.used < before) fs::remove(entry.path, ignored);
+        if (is_temporary_name(name) && entry.used < before) fs::remove(entry.path, ignored);
     });
 }
 

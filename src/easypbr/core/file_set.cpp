@@ -1,11 +1,14 @@
 #include "easypbr/core/file_set.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -14,36 +17,45 @@
 namespace easypbr {
 namespace {
 
-fs::path temporary_beside(const fs::path& path) {
-    static std::atomic<unsigned> counter{0};
-    return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), counter++);
-}
+constexpr std::string_view temporary_prefix = ".easypbr.", temporary_suffix = ".tmp";
 
 [[noreturn]] void fail_write(const fs::path& path, int error) {
     throw FileError(fmt::format("cannot write {}: {}", path.string(), std::strerror(error)));
 }
 
-void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path& path) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail_write(path, errno);
-        bytes = bytes.subspan(size_t(written));
+/// What is at a target; nothing where no file is there yet. A file that is renamed over a device or a pipe
+/// would take its place.
+std::optional<struct stat> status_of(const fs::path& target) {
+    struct stat info {};
+    if (::stat(target.c_str(), &info) != 0) {
+        if (errno != ENOENT) fail_write(target, errno);
+        return std::nullopt;
     }
-}
-
-/// A file that is renamed over a device or a pipe would take its place.
-void require_no_special_file(const fs::path& target) {
-    std::error_code ignored;
-    const fs::file_status status = fs::status(target, ignored);
-    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+    if (!S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
         throw FileError(fmt::format("cannot write {}: it is a device, a pipe or a socket", target.string()));
+    return info;
 }
 
 void require_writable(const fs::path& target) {
-    require_no_special_file(target);
-    if (fs::exists(target) && ::access(target.c_str(), W_OK) != 0) fail_write(target, errno);
-    if (target.filename().empty() || fs::is_directory(target)) fail_write(target, EISDIR);
+    const auto old = status_of(target);
+    if (target.filename().empty() || (old && S_ISDIR(old->st_mode))) fail_write(target, EISDIR);
+    if (old && ::access(target.c_str(), W_OK) != 0) fail_write(target, errno);
+}
+
+struct NewFile {
+    fs::path path;
+    Descriptor file;
+};
+
+/// A file of its own in the folder of the target.
+NewFile create_beside(const fs::path& target) {
+    for (;;) {
+        fs::path path = target.parent_path() / temporary_name();
+        Descriptor file{open_file(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
+        if (file.get() >= 0) return {std::move(path), std::move(file)};
+        // Left by a process that was killed, or that of another container.
+        if (errno != EEXIST) fail_write(target, errno);
+    }
 }
 
 void rename_to(const fs::path& target, const fs::path& from) {
@@ -61,6 +73,24 @@ fs::path real_target(fs::path path) {
     return real.empty() ? path : real;
 }
 
+std::string temporary_name() {
+    static std::atomic<unsigned> counter{0};
+    return fmt::format("{}{}.{}{}", temporary_prefix, ::getpid(), counter++, temporary_suffix);
+}
+
+bool is_temporary_name(std::string_view name) {
+    return name.starts_with(temporary_prefix) && name.ends_with(temporary_suffix);
+}
+
+void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path& path) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail_write(path, errno);
+        bytes = bytes.subspan(size_t(written));
+    }
+}
+
 void replace_file(const fs::path& target, const fs::path& by) {
     require_writable(target);
     rename_to(target, by);
@@ -72,11 +102,11 @@ FileSet::~FileSet() {
 
 void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
     const fs::path target = real_target(path);
-    require_no_special_file(target);
-    const fs::path& beside = files_.emplace_back(File{temporary_beside(target), target}).beside;
-    const Descriptor file{open_file(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
-    if (file.get() < 0) fail_write(target, errno);
-    write_all(file.get(), bytes, target);
+    status_of(target);
+    File& file = files_.emplace_back(File{{}, target});
+    NewFile created = create_beside(target);
+    file.beside = std::move(created.path);
+    write_all(created.file.get(), bytes, target);
 }
 
 void FileSet::add(const fs::path& path, std::string_view text) {
@@ -103,12 +133,9 @@ void write_file(const fs::path& path, std::string_view text) {
 }
 
 void check_writable(const fs::path& given) {
-    const fs::path path = real_target(given);
-    require_writable(path);
-    const fs::path beside = temporary_beside(path);
-    const Descriptor file{open_file(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
-    if (file.get() < 0) fail_write(path, errno);
-    ::unlink(beside.c_str());
+    const fs::path target = real_target(given);
+    require_writable(target);
+    ::unlink(create_beside(target).path.c_str());
 }
 
 }  // namespace easypbr

@@ -4,10 +4,19 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace easypbr {
+
+/// A new name for a file while it is written, short whatever it will be called:
+/// ".easypbr.PROCESS.NUMBER.tmp".
+std::string temporary_name();
+bool is_temporary_name(std::string_view name);
+
+/// Writes all bytes to an open file; `path` stands in messages. Throws FileError.
+void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 /// All files of a set appear at once, or none: each is written beside its target, and commit() renames them.
 /// A set that is destroyed before leaves nothing behind, and the files that were there as they were.
