@@ -1,6 +1,7 @@
 #include "easypbr/core/file_set.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -105,6 +106,54 @@ TEST_F(FileSets, LeaveWhatIsWriteProtected) {
     EXPECT_THROW(first_.commit(), FileError);
     EXPECT_THROW(write_file(folder_ / "old", std::string_view("after")), FileError);
     EXPECT_EQ(text_of("old"), "before");
+}
+
+mode_t mode_of(const fs::path& path) {
+    struct stat info {};
+    EXPECT_EQ(::stat(path.c_str(), &info), 0);
+    return info.st_mode & 07777;
+}
+
+TEST_F(FileSets, KeepThePermissionsOfWhatTheyReplace) {
+    const mode_t mask = ::umask(022);
+    for (const mode_t mode : {0600, 0640, 0666}) {
+        ASSERT_EQ(::chmod((folder_ / "old").c_str(), mode), 0);
+        FileSet set;
+        set.add(folder_ / "old", std::string_view("secret"));
+        // What is written beside it is as private already.
+        for (const auto& entry : fs::directory_iterator(folder_.path())) {
+            if (FileBytes(entry.path()).text() != "secret") continue;
+            EXPECT_EQ(mode_of(entry.path()), mode);
+        }
+        set.commit();
+        EXPECT_EQ(mode_of(folder_ / "old"), mode);
+    }
+    // A new file has those that the user wants new files to have.
+    write_file(folder_ / "new", std::string_view("text"));
+    EXPECT_EQ(mode_of(folder_ / "new"), 0644u);
+    ::umask(mask);
+}
+
+TEST_F(FileSets, KeepTheOwnerOfWhatTheyReplace) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root may give files away";
+    constexpr uid_t user = 65534, group = 65533;
+    ASSERT_EQ(::chown((folder_ / "old").c_str(), user, group), 0);
+    write_file(folder_ / "old", std::string_view("after"));
+    struct stat info {};
+    ASSERT_EQ(::stat((folder_ / "old").c_str(), &info), 0);
+    EXPECT_EQ(info.st_uid, user);
+    EXPECT_EQ(info.st_gid, group);
+}
+
+// A user that may not give it the group: whoever shares the user's own group gets what everybody gets.
+TEST_F(FileSets, GiveAnotherGroupNoMoreThanEverybody) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root may give files away";
+    constexpr gid_t none_of_the_users = 65533;
+    ASSERT_EQ(::chown((folder_ / "old").c_str(), uid_t(-1), none_of_the_users), 0);
+    ASSERT_EQ(::chmod((folder_ / "old").c_str(), 0664), 0);
+    const WithoutRoot user({folder_.path(), folder_ / "old"});
+    write_file(folder_ / "old", std::string_view("after"));
+    EXPECT_EQ(mode_of(folder_ / "old"), 0644u);
 }
 
 TEST_F(FileSets, FollowLinksThatLeadToNoFileYet) {

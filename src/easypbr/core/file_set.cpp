@@ -47,11 +47,24 @@ struct NewFile {
     Descriptor file;
 };
 
-/// A file of its own in the folder of the target.
+/// A new file gets the owner and the permissions of the one that it replaces. Where it may not have the
+/// group, another group gets no more than everybody.
+void take_over_access(int descriptor, const struct stat& old) {
+    mode_t mode = old.st_mode & 0777;
+    const bool has_group =
+        ::fchown(descriptor, old.st_uid, old.st_gid) == 0 || ::fchown(descriptor, uid_t(-1), old.st_gid) == 0;
+    if (!has_group) mode &= 0707 | (mode & 0007) << 3;
+    // Without permissions, as on FAT, all files have the same.
+    ::fchmod(descriptor, mode);
+}
+
+/// A file of its own in the folder of the target, which nobody may read who may not read the target.
 NewFile create_beside(const fs::path& target) {
+    const auto old = status_of(target);
     for (;;) {
         fs::path path = target.parent_path() / temporary_name();
-        Descriptor file{open_file(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
+        Descriptor file{open_file(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, old ? 0600 : 0666)};
+        if (file.get() >= 0 && old) take_over_access(file.get(), *old);
         if (file.get() >= 0) return {std::move(path), std::move(file)};
         // Left by a process that was killed, or that of another container.
         if (errno != EEXIST) fail_write(target, errno);
@@ -102,7 +115,6 @@ FileSet::~FileSet() {
 
 void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
     const fs::path target = real_target(path);
-    status_of(target);
     File& file = files_.emplace_back(File{{}, target});
     NewFile created = create_beside(target);
     file.beside = std::move(created.path);
