@@ -156,6 +156,37 @@ TEST_F(FileSets, GiveAnotherGroupNoMoreThanEverybody) {
     EXPECT_EQ(mode_of(folder_ / "old"), 0644u);
 }
 
+TEST_F(FileSets, WriteIntoAFileWhoseFolderTakesNoOther) {
+    const fs::path old = folder_ / "old";
+    ASSERT_EQ(::chmod(old.c_str(), 0666), 0);
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0555), 0);
+    {
+        const WithoutRoot user({old});
+        EXPECT_NO_THROW(check_writable(old));
+        EXPECT_THROW(check_writable(folder_ / "new"), FileError);
+        FileSet set;
+        set.add(old, std::string_view("new"));
+        EXPECT_EQ(text_of("old"), "before");
+        set.commit();
+        EXPECT_EQ(text_of("old"), "new");
+    }
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0755), 0);
+}
+
+// As in /tmp: there is room for other files, but this one is not to be removed.
+TEST_F(FileSets, WriteIntoAnotherUsersFileInAStickyFolder) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
+    const fs::path old = folder_ / "old";
+    ASSERT_EQ(::chmod(old.c_str(), 0666), 0);
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 01777), 0);
+    const size_t files = size_t(std::distance(fs::directory_iterator(folder_.path()), {}));
+    const WithoutRoot user(std::vector<fs::path>{});
+    EXPECT_NO_THROW(check_writable(old));
+    write_file(old, std::string_view("new"));
+    EXPECT_EQ(text_of("old"), "new");
+    EXPECT_EQ(size_t(std::distance(fs::directory_iterator(folder_.path()), {})), files);
+}
+
 TEST_F(FileSets, FollowLinksThatLeadToNoFileYet) {
     fs::create_directory(folder_ / "folder");
     fs::create_symlink("folder/new", folder_ / "inner");

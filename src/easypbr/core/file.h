@@ -96,13 +96,14 @@ class FileBytes {
 /// Throws FileError unless the file can be opened for reading and is a regular one.
 void check_readable(const fs::path& path);
 
-/// Writes beside the target, then renames: a reader sees the old file or the whole new one. Throws FileError,
-/// among others where a device, a pipe or a socket is there.
+/// Writes beside the target, then renames: a reader sees the old file or the whole new one, unless the file
+/// can only be written into (FileSet). Throws FileError, among others where a device, a pipe or a socket is
+/// there.
 void write_file(const fs::path& path, std::span<const std::byte> bytes);
 void write_file(const fs::path& path, std::string_view text);
 
-/// Throws FileError unless a file could be written at `path` (its folder exists and is writable, it is no
-/// folder). Leaves nothing behind.
+/// Throws FileError unless a file could be written at `path`: its folder exists and takes files, or the file
+/// is there and can be written into; it is no folder. Leaves nothing behind.
 void check_writable(const fs::path& path);
 
 /// Extension in lower case without the dot: "ply" for "Drone.PLY", empty when there is none.

@@ -1,6 +1,7 @@
 #include "easypbr/core/file_set.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,7 +12,6 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/file.h"
 #include "easypbr/core/open_file.h"
 
 namespace easypbr {
@@ -58,21 +58,58 @@ void take_over_access(int descriptor, const struct stat& old) {
     ::fchmod(descriptor, mode);
 }
 
-/// A file of its own in the folder of the target, which nobody may read who may not read the target.
+/// Whether a file can be written though its folder takes no other: it may be mounted there by itself.
+bool can_be_written_into(const fs::path& target, int folder_error) {
+    const bool is_refused = folder_error == EACCES || folder_error == EPERM || folder_error == EROFS;
+    return is_refused && ::access(target.c_str(), W_OK) == 0;
+}
+
+/// A file of its own in the folder of the target, which nobody may read who may not read the target. None
+/// where the target can only be written into.
 NewFile create_beside(const fs::path& target) {
     const auto old = status_of(target);
     for (;;) {
         fs::path path = target.parent_path() / temporary_name();
         Descriptor file{open_file(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, old ? 0600 : 0666)};
         if (file.get() >= 0 && old) take_over_access(file.get(), *old);
+        const int error = errno;
         if (file.get() >= 0) return {std::move(path), std::move(file)};
+        if (can_be_written_into(target, error)) return {fs::path(), Descriptor()};
         // Left by a process that was killed, or that of another container.
-        if (errno != EEXIST) fail_write(target, errno);
+        if (error != EEXIST) fail_write(target, error);
     }
 }
 
-void rename_to(const fs::path& target, const fs::path& from) {
-    if (::rename(from.c_str(), target.c_str()) != 0) fail_write(target, errno);
+Descriptor file_in_memory(const fs::path& target) {
+    Descriptor file{::memfd_create("easypbr", MFD_CLOEXEC)};
+    if (file.get() < 0) fail_write(target, errno);
+    return file;
+}
+
+/// Puts all bytes of an open file into one that is there.
+void copy_into(const fs::path& target, int from) {
+    const Descriptor file{open_file(target.c_str(), O_WRONLY | O_TRUNC | O_NOFOLLOW | O_NONBLOCK)};
+    if (file.get() < 0) fail_write(target, errno);
+    std::vector<std::byte> part(1 << 16);
+    for (off_t at = 0;;) {
+        const ssize_t count = ::pread(from, part.data(), part.size(), at);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail_write(target, errno);
+        if (count == 0) return;
+        write_all(file.get(), std::span(part).first(size_t(count)), target);
+        at += count;
+    }
+}
+
+/// Puts a file in the place of the target. One that is mounted, or another user's in a sticky folder, keeps
+/// its place and gets the bytes.
+void move_over(const fs::path& target, const fs::path& beside) {
+    if (::rename(beside.c_str(), target.c_str()) == 0) return;
+    if (errno != EPERM && errno != EBUSY && errno != EXDEV) fail_write(target, errno);
+    const Descriptor file{open_file(beside.c_str(), O_RDONLY)};
+    if (file.get() < 0) fail_write(target, errno);
+    copy_into(target, file.get());
+    ::unlink(beside.c_str());
 }
 
 }  // namespace
@@ -106,19 +143,29 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
 
 void replace_file(const fs::path& target, const fs::path& by) {
     require_writable(target);
-    rename_to(target, by);
+    if (const auto old = status_of(target)) {
+        const Descriptor file{open_file(by.c_str(), O_WRONLY)};
+        if (file.get() >= 0) take_over_access(file.get(), *old);
+    }
+    move_over(target, by);
 }
 
 FileSet::~FileSet() {
-    for (const File& file : files_) ::unlink(file.beside.c_str());
+    for (const File& file : files_)
+        if (!file.beside.empty()) ::unlink(file.beside.c_str());
 }
 
 void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
     const fs::path target = real_target(path);
-    File& file = files_.emplace_back(File{{}, target});
+    // Nothing fails between the file's creation and its entry.
+    files_.reserve(files_.size() + 1);
+    File file{{}, target, Descriptor()};
     NewFile created = create_beside(target);
     file.beside = std::move(created.path);
-    write_all(created.file.get(), bytes, target);
+    if (file.beside.empty()) file.in_memory = file_in_memory(target);
+    const int descriptor = file.beside.empty() ? file.in_memory.get() : created.file.get();
+    files_.push_back(std::move(file));
+    write_all(descriptor, bytes, target);
 }
 
 void FileSet::add(const fs::path& path, std::string_view text) {
@@ -129,7 +176,10 @@ void FileSet::commit() {
     for (const File& file : files_) require_writable(file.target);
     while (!files_.empty()) {
         const File& file = files_.front();
-        rename_to(file.target, file.beside);
+        if (file.beside.empty())
+            copy_into(file.target, file.in_memory.get());
+        else
+            move_over(file.target, file.beside);
         files_.erase(files_.begin());
     }
 }
@@ -147,7 +197,8 @@ void write_file(const fs::path& path, std::string_view text) {
 void check_writable(const fs::path& given) {
     const fs::path target = real_target(given);
     require_writable(target);
-    ::unlink(create_beside(target).path.c_str());
+    const NewFile beside = create_beside(target);
+    if (!beside.path.empty()) ::unlink(beside.path.c_str());
 }
 
 }  // namespace easypbr

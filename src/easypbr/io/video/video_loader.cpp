@@ -116,7 +116,8 @@ void check_video(const fs::path& path, const std::string& codec) {
 
 std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions& options) {
     const fs::path target = real_target(path);
-    if (fs::is_regular_file(target)) return std::make_unique<ReplacingVideo>(target, options);
+    std::error_code ignored;
+    if (fs::is_regular_file(target, ignored)) return std::make_unique<ReplacingVideo>(target, options);
     return open_at(path, options);
 }
 
