@@ -65,6 +65,14 @@ Descriptor::~Descriptor() {
 }
 
 InputFile::InputFile(fs::path path) : path_(std::move(path)), file_(open_input(path_)) {
+    look();
+}
+
+InputFile::InputFile(Descriptor file, fs::path path) : path_(std::move(path)), file_(std::move(file)) {
+    look();
+}
+
+void InputFile::look() {
     struct stat info {};
     // A socket cannot be opened at all.
     if (file_.get() < 0 && errno == ENXIO && ::stat(path_.c_str(), &info) == 0 && !S_ISREG(info.st_mode))

@@ -40,6 +40,8 @@ class InputFile {
     /// socket or a device, which could block for ever; or when it lies outside of the folder of the thread's
     /// FolderScope. Never blocks.
     explicit InputFile(fs::path path);
+    /// Of a file that is open; `path` stands in messages. Throws FileError when it is no regular one.
+    InputFile(Descriptor file, fs::path path);
 
     const fs::path& path() const { return path_; }
     int descriptor() const { return file_.get(); }
@@ -50,6 +52,8 @@ class InputFile {
     void read(size_t from, std::span<std::byte> out) const;
 
   private:
+    void look();
+
     fs::path path_;
     Descriptor file_;
     size_t size_ = 0;

@@ -27,14 +27,6 @@ thread_local const Folder* innermost_folder = nullptr;
     throw FileError(fmt::format("cannot read {}: {}", path.string(), why));
 }
 
-/// Opens one name in a folder, which is not followed where it is a link.
-Descriptor open_step(int folder, const char* name, int flags) {
-    int file;
-    do file = ::openat(folder, name, flags | O_NOFOLLOW | O_CLOEXEC);
-    while (file < 0 && errno == EINTR);
-    return Descriptor(file);
-}
-
 /// -1 and ENOSYS or EPERM where the system, or a sandbox, has no openat2().
 int open_beneath(int folder, const char* path, int flags) {
     open_how how{};
@@ -66,16 +58,17 @@ Descriptor Folder::open(const fs::path& relative, int flags) const {
 }
 
 Descriptor Folder::open_in_steps(const fs::path& relative, int flags) const {
-    Descriptor at = open_step(folder_.get(), ".", O_PATH | O_DIRECTORY);
+    Descriptor at{open_file_in(folder_.get(), ".", O_PATH | O_DIRECTORY)};
     if (relative.is_absolute() || std::ranges::find(relative, "..") != relative.end()) {
         errno = EXDEV;
         return Descriptor();
     }
     for (auto name = relative.begin(); name != relative.end() && at.get() >= 0; ++name) {
         const bool is_last = std::next(name) == relative.end();
-        at = open_step(at.get(), name->empty() ? "." : name->c_str(), is_last ? flags : O_PATH | O_DIRECTORY);
+        at = Descriptor(open_file_in(at.get(), name->empty() ? "." : name->c_str(),
+                                     is_last ? flags : O_PATH | O_DIRECTORY));
     }
-    return relative.empty() ? open_step(folder_.get(), ".", flags) : std::move(at);
+    return relative.empty() ? Descriptor(open_file_in(folder_.get(), ".", flags)) : std::move(at);
 }
 
 std::vector<FolderEntry> Folder::list(const fs::path& relative) const {
