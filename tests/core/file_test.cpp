@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pwd.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -14,7 +15,9 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
+#include <string>
 #include <thread>
 
 #include "easypbr/core/cache.h"
@@ -332,6 +335,77 @@ TEST_F(Cache, IsSharedByProcesses) {
     EXPECT_EQ(trim_cache(0).entries, 0u);
     EXPECT_TRUE(fs::is_empty(cache_folder()));
     unsetenv("EASYPBR_CACHE_LIMIT");
+}
+
+/// Sets a variable of the environment, or unsets it (null), as long as it lives.
+class Variable {
+  public:
+    Variable(const char* name, const char* value) : name_(name) {
+        if (const char* old = std::getenv(name)) old_ = old;
+        set(value);
+    }
+    ~Variable() { set(old_ ? old_->c_str() : nullptr); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+  private:
+    void set(const char* value) const { value ? setenv(name_, value, 1) : unsetenv(name_); }
+    const char* name_;
+    std::optional<std::string> old_;
+};
+
+TEST_F(Cache, FollowsNoLinks) {
+    write_file(folder_ / "victim", std::string_view("precious"));
+    fs::create_directory(cache_folder());
+    fs::create_symlink(folder_ / "victim", cache_folder() / key_of(0));
+    cache_store(key_of(0), bytes_of("content"));
+    EXPECT_EQ(FileBytes(folder_ / "victim").text(), "precious");
+    EXPECT_EQ(cache_load(key_of(0)), bytes_of("content"));
+    EXPECT_FALSE(fs::is_symlink(cache_folder() / key_of(0)));
+    // Nor is a good entry read through one.
+    fs::rename(cache_folder() / key_of(0), folder_ / "moved");
+    fs::create_symlink(folder_ / "moved", cache_folder() / key_of(0));
+    EXPECT_FALSE(cache_load(key_of(0)));
+}
+
+TEST_F(Cache, KnowsWhichKeyAnEntryIsOf) {
+    for (const int i : {0, 1}) cache_store(key_of(i), bytes_of("content " + std::to_string(i)));
+    const fs::path a = cache_folder() / key_of(0), b = cache_folder() / key_of(1), other = folder_ / "other";
+    fs::rename(a, other);
+    fs::rename(b, a);
+    fs::rename(other, b);
+    for (const int i : {0, 1}) EXPECT_FALSE(cache_load(key_of(i))) << i;
+}
+
+TEST_F(Cache, IsOfNoOtherUser) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can be two users";
+    constexpr uid_t another = 65534;
+    const Variable not_chosen("EASYPBR_CACHE_DIR", nullptr), its_own("XDG_CACHE_HOME", folder_.c_str());
+    ASSERT_EQ(cache_folder(), folder_ / "easypbr");
+    cache_store(key_of(0), bytes_of("content"));
+    cache_store(key_of(1), bytes_of("content"));
+    EXPECT_EQ(fs::status(cache_folder()).permissions(), fs::perms::owner_all);
+    ASSERT_EQ(::chown((cache_folder() / key_of(1)).c_str(), another, gid_t(-1)), 0);
+    EXPECT_TRUE(cache_load(key_of(0)));
+    EXPECT_FALSE(cache_load(key_of(1)));
+    EXPECT_EQ(cache_problem(), "");
+
+    ASSERT_EQ(::chown(cache_folder().c_str(), another, gid_t(-1)), 0);
+    EXPECT_EQ(cache_problem(), "it belongs to another user");
+    EXPECT_FALSE(cache_load(key_of(0)));
+    cache_store(key_of(2), bytes_of("content"));
+    EXPECT_FALSE(fs::exists(cache_folder() / key_of(2)));
+    EXPECT_EQ(cache_use().entries, 0u);
+    // Who names the folder shares it on purpose.
+    const Variable chosen("EASYPBR_CACHE_DIR", (folder_ / "easypbr").c_str());
+    for (const int i : {0, 1}) EXPECT_TRUE(cache_load(key_of(i))) << i;
+}
+
+TEST_F(Cache, IsInTheHomeOfAUserWhoseEnvironmentNamesNone) {
+    const Variable not_chosen("EASYPBR_CACHE_DIR", nullptr), none("XDG_CACHE_HOME", nullptr),
+        homeless("HOME", nullptr);
+    const passwd* const user = ::getpwuid(::geteuid());
+    EXPECT_EQ(cache_folder(), user ? fs::path(user->pw_dir) / ".cache" / "easypbr" : fs::path());
 }
 
 // XXH3-128 of nothing with seed 0, from the reference implementation's published test vectors.

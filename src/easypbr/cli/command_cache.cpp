@@ -36,7 +36,8 @@ int run_cache(const CacheOptions& options) {
         throw FileError(fmt::format("cannot remove entries of the cache {}: {} entries, {}, are left",
                                     cache_folder().string(), use.entries, megabytes(use.bytes)));
     if (options.clear) return 0;
-    fmt::print("{:<12}{}\n", "folder", cache_folder().string());
+    const std::string folder = cache_folder().string();
+    fmt::print("{:<12}{}\n", "folder", folder.empty() ? "none" : folder);
     fmt::print("{:<12}{}\n", "entries", use.entries);
     fmt::print("{:<12}{}\n", "size", megabytes(use.bytes));
     fmt::print("{:<12}{}\n", "limit", megabytes(cache_limit()));

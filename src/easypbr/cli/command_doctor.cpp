@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <cstdio>
 
@@ -28,18 +27,10 @@ void print(const std::string& name, const std::string& value) {
     fmt::print("{:<12}{}\n", name, value);
 }
 
-/// The cache's folder is made when it is first needed, so its nearest ancestor that exists must be writable.
-bool can_be_written(fs::path folder) {
-    while (!folder.empty() && !fs::exists(folder) && folder != folder.root_path())
-        folder = folder.parent_path();
-    return ::access(folder.c_str(), W_OK | X_OK) == 0;
-}
-
 void print_cache() {
-    const fs::path folder = cache_folder();
-    print("cache",
-          fmt::format("{} ({})", folder.string(),
-                      can_be_written(folder) ? "writable" : "not writable: nothing is kept between runs"));
+    const std::string folder = cache_folder().string(), problem = cache_problem();
+    print("cache", fmt::format("{} ({})", folder.empty() ? "none" : folder,
+                               problem.empty() ? "writable" : problem + ": nothing is kept between runs"));
 }
 
 void print_formats() {

@@ -13,7 +13,7 @@ namespace easypbr::gpu {
 namespace {
 
 /// Raise it when anything here changes what is computed.
-constexpr const char* cache_version = "env5-";
+constexpr const char* cache_version = "env6-";
 
 constexpr float largest_half = 65504.0f;
 
