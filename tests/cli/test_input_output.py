@@ -98,3 +98,38 @@ def test_a_file_that_asks_for_too_much_memory(easypbr, tmp_path, command, limit)
     failed = easypbr(command[0], path, *command[1:], *limit, code=1)
     assert "zeros.gltf: accessors[0] would take 12 MB, and of the 10 MB that reading may take 10 MB are left" in failed.stderr
     assert not list(tmp_path.glob("a.*"))
+
+
+def run_with_errors(environment, folder, arguments, *, closed):
+    """The exit code of a command whose standard error is full, or closed."""
+    command = [str(BINARY), *map(str, arguments)]
+    if closed:
+        return subprocess.run(command, env=environment, cwd=folder, timeout=300, preexec_fn=lambda: os.close(2)).returncode
+    with open("/dev/full", "w") as full:
+        return subprocess.run(command, stderr=full, env=environment, cwd=folder, timeout=300).returncode
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_errors_that_cannot_be_written_change_no_exit_code(environment, box, tmp_path, closed):
+    (tmp_path / "warn.obj").write_text("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n")
+    small = ("--size", "32x24", "--samples", "1")
+    expected = [(("render", "warn.obj", "-o", "warned.png", *small), 0), (("render", box, "-o", "timed.png", "--timing", *small), 0),
+                (("nonsense",), 2), (("info", "missing.ply"), 1)]
+    for arguments, code in expected:
+        assert run_with_errors(environment, tmp_path, arguments, closed=closed) == code, arguments
+    assert png.read(tmp_path / "warned.png").shape == png.read(tmp_path / "timed.png").shape == (24, 32, 4)
+
+
+def test_no_file_takes_the_place_of_a_closed_stream(environment, box, tmp_path):
+    """Else the first file that is opened would get what is printed."""
+    def close_all():
+        for stream in (0, 1, 2):
+            os.close(stream)
+
+    command = [str(BINARY), "convert", str(box), "out.ply"]
+    assert subprocess.run(command, env=environment, cwd=tmp_path, timeout=300, preexec_fn=close_all).returncode == 0
+    assert (tmp_path / "out.ply").read_bytes().startswith(b"ply\n")
+    # Results that cannot be written stay an error.
+    done = subprocess.run([str(BINARY), "info", str(box)], env=environment, timeout=300, preexec_fn=lambda: os.close(1),
+                          stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1 and done.stderr.startswith("easypbr: error: ")

@@ -180,7 +180,7 @@ class RenderJob {
             draw(picture, times);
         }
         open(picture);
-        if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
+        if (options_.timing) print_note("timing: " + times.summary());
     }
 
     void draw(const Picture& picture, StageTimes& times) {

@@ -15,11 +15,16 @@ namespace {
 
 constexpr const char* erase_line = "\r\033[K";
 
+/// What cannot be written there is lost: there is nowhere to say so.
+void print_text(std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 std::mutex mutex;
 bool bar_is_shown = false;
 
 void erase_bar() {
-    if (bar_is_shown) fmt::print(stderr, "{}", erase_line);
+    if (bar_is_shown) print_text(erase_line);
     bar_is_shown = false;
 }
 
@@ -28,7 +33,7 @@ void print_line(const char* kind, std::string_view message) {
     std::replace(line.begin(), line.end(), '\n', ' ');
     const std::lock_guard lock(mutex);
     erase_bar();
-    fmt::print(stderr, "easypbr: {}: {}\n", kind, line);
+    print_text(fmt::format("easypbr: {}: {}\n", kind, line));
 }
 
 void print_progress(std::string_view what, double fraction) {
@@ -36,9 +41,8 @@ void print_progress(std::string_view what, double fraction) {
     const std::lock_guard lock(mutex);
     if (fraction >= 1) return erase_bar();
     const int filled = std::clamp(int(fraction * width), 0, width);
-    fmt::print(stderr, "{}[{:=<{}}{:{}}] {:3.0f} % {}", erase_line, "", filled, "", width - filled,
-               fraction * 100, what);
-    std::fflush(stderr);
+    print_text(fmt::format("{}[{:=<{}}{:{}}] {:3.0f} % {}", erase_line, "", filled, "", width - filled,
+                           fraction * 100, what));
     bar_is_shown = true;
 }
 
@@ -53,6 +57,12 @@ Console::Console() {
 
 Console::~Console() {
     be_quiet();
+}
+
+void print_note(std::string_view message) {
+    const std::lock_guard lock(mutex);
+    erase_bar();
+    print_text(fmt::format("easypbr: {}\n", message));
 }
 
 void print_warning(std::string_view message) {

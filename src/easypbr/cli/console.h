@@ -1,4 +1,5 @@
-// stderr: one line per error and warning, and a progress bar on a terminal.
+// stderr: one line per error and warning, and a progress bar on a terminal. That it is full or closed is no
+// error.
 #pragma once
 
 #include <string_view>
@@ -14,6 +15,8 @@ class Console {
     Console& operator=(const Console&) = delete;
 };
 
+/// "easypbr: MESSAGE" on one line.
+void print_note(std::string_view message);
 /// "easypbr: warning: MESSAGE" on one line.
 void print_warning(std::string_view message);
 /// "easypbr: error: MESSAGE" on one line.
