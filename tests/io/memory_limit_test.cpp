@@ -41,7 +41,11 @@ TEST(MemoryScope, CountsWhatIsReadTogether) {
     charge_memory(60, "one");
     charge_memory(40, "another");
     EXPECT_EQ(message_of([] { charge_memory(2'000'000, "a third"); }),
-              "a.glb: a third would take 2 MB, and of the 0 MB that reading may take 0 MB are left "
+              "a.glb: a third would take 2 MB, and of the 100 bytes that reading may take 0 bytes are left "
+              "(limits.memory)");
+    const MemoryScope small("a.obj", 400'000);
+    EXPECT_EQ(message_of([] { charge_memory(479'600, "a fourth"); }),
+              "a.obj: a fourth would take 480 kB, and of the 400 kB that reading may take 400 kB are left "
               "(limits.memory)");
 }
 
@@ -109,6 +113,61 @@ TEST(MemoryLimit, EqualMeshesShareTheirArrays) {
     EXPECT_EQ(children[0].V().data(), children[19].V().data());
     EXPECT_EQ(children[0].name(), "m0");
     EXPECT_EQ(children[19].name(), "m19");
+}
+
+std::string repeated(const std::string& line, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += line;
+    return text;
+}
+
+/// The message of the first charge that 2 MB are too little for; and none where `enough_mb` are allowed.
+void expect_charge(const std::string& format, const std::string& file, const std::string& charge,
+                   double enough_mb) {
+    SCOPED_TRACE(format);
+    const std::string name = "a." + format;
+    const auto read = [&](double mb) {
+        return message_of(
+            [&] { load_scene(bytes_of(file), name, {.memory_gb = mb / 1000, .format = format}); });
+    };
+    EXPECT_EQ(read(2),
+              name + ": " + charge + ", and of the 2 MB that reading may take 2 MB are left (limits.memory)");
+    EXPECT_EQ(read(enough_mb), "");
+}
+
+/// In float32 a position takes 12 bytes, in int32 a triangle as many.
+TEST(MemoryLimit, LinesOfText) {
+    const std::string points = repeated("1 2 3\n", 250'000);
+    expect_charge("xyz", points, "its points would take 3 MB", 3.01);
+    expect_charge("off", "OFF\n250000 1 0\n" + points + "3 0 1 2\n", "its vertices would take 3 MB", 3.01);
+    // A face says its number of corners too.
+    expect_charge("obj", repeated("v 1 2 3\n", 150'000) + repeated("f 1 2 3\n", 75'000),
+                  "its vertices and faces would take 3 MB", 3.01);
+    // Three indices and an end for each of 200000 faces: 3.2 MB.
+    expect_charge(
+        "ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 200000\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" +
+            repeated("3 0 1 2\n", 200'000),
+        "its lists would take 3 MB", 3.3);
+}
+
+/// A facet has nine numbers and becomes three indices: 48 bytes. Its corners are vertices of 12 bytes each.
+TEST(MemoryLimit, FacetsOfStl) {
+    constexpr uint32_t count = 50'000;
+    std::string binary(80, ' '), text = "solid a\n";
+    binary.append(reinterpret_cast<const char*>(&count), sizeof count);
+    for (uint32_t i = 0; i < count; ++i) {
+        const float x = float(i), facet[12] = {0, 0, 1, x, 0, 0, x, 1, 0, x, 0, 1};
+        binary.append(reinterpret_cast<const char*>(facet), sizeof facet).append(2, '\0');
+        text += fmt::format(
+            "facet normal 0 0 1\nouter loop\nvertex {0} 0 0\nvertex {0} 1 0\nvertex {0} 0 1\n"
+            "endloop\nendfacet\n",
+            i);
+    }
+    // With 1.8 MB of vertices that no two facets share: 4.2 MB.
+    for (const std::string& file : {binary, text + "endsolid a\n"})
+        expect_charge("stl", file, "its facets would take 2 MB", 4.21);
 }
 
 /// A ZIP archive of deflated entries of zeros.

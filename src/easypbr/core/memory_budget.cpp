@@ -56,6 +56,8 @@ uint64_t left_of_addresses() {
 }
 
 std::string size_text(uint64_t bytes) {
+    if (bytes < 1000) return fmt::format("{} bytes", bytes);
+    if (bytes < 1'000'000) return fmt::format("{:.0f} kB", double(bytes) / 1e3);
     const double mb = double(bytes) / 1e6;
     return mb < 1000 ? fmt::format("{:.0f} MB", mb) : fmt::format("{:.1f} GB", mb / 1000);
 }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/element_table.h"
@@ -211,6 +212,7 @@ void join_lists(const Source& source, const std::vector<ChunkLists>& chunks, siz
     if (value_begin.back() > UINT32_MAX)
         fail(source, fmt::format("more than {} list entries are not supported", UINT32_MAX));
     list.rows = row_begin.back();
+    charge_memory((value_begin.back() + uint64_t(list.rows) + 1) * sizeof(uint32_t), "its lists");
     list.first.assign(list.rows + 1, 0);
     list.values.resize(Eigen::Index(value_begin.back()));
     parallel_for(chunks.size(), 1, [&](size_t i) {

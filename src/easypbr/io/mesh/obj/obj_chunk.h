@@ -43,6 +43,15 @@ struct ObjChunk {
                : kind == obj_uv     ? uv.size() / 2
                                     : normals.size() / 3;
     }
+
+    /// Of the values, which are as many in a mesh's arrays.
+    size_t byte_count() const {
+        size_t numbers = positions.size() + uv.size() + normals.size() + colors.size() + face_sizes.size() +
+                         edges.values.size() + edges.relative.size();
+        for (const ObjIndices& indices : corners) numbers += indices.values.size() + indices.relative.size();
+        return numbers * sizeof(float) + materials.size() * sizeof(materials[0]) +
+               libraries.size() * sizeof(libraries[0]);
+    }
 };
 
 /// Throws FormatError with the line of what is not understood. `text` is a part of `source` that ends at a

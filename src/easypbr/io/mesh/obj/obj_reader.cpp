@@ -8,6 +8,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/obj/mtl_reader.h"
@@ -53,6 +54,11 @@ std::vector<ObjChunk> parse_chunks(const Source& source, const Vec3d& offset) {
                 parse_obj_chunk(source, source.bytes.substr(starts[i], starts[i + 1] - starts[i]), offset);
             progress.advance(starts[i + 1] - starts[i]);
         });
+        // How much lines hold is known when they are read: no more than a slab is read beyond the limit.
+        size_t bytes = 0;
+        for (size_t i = first; i < std::min(first + obj_slab, chunks.size()); ++i)
+            bytes += chunks[i].byte_count();
+        charge_memory(bytes, "its vertices and faces");
         source.release_until(source.begin() + starts[first]);
     }
     return chunks;

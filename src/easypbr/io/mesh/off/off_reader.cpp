@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/source/text_scanner.h"
@@ -131,6 +132,8 @@ class OffReader {
     std::vector<ElementPlan> plan() {
         std::vector<ElementPlan> plans{{&elements_[0], std::vector<Column>(elements_[0].properties.size())},
                                        {&elements_[1], std::vector<Column>(1)}};
+        const size_t numbers = elements_[0].properties.size();
+        charge_memory(uint64_t(header_.vertices) * numbers * sizeof(float), "its vertices");
         size_t next = 0;
         const auto take = [&](auto& matrix, size_t width) {
             if (width == 0) return;
@@ -164,6 +167,7 @@ class OffReader {
         const bool any = std::ranges::any_of(
             samples, [&](const char* row) { return color_behind_indices(row, source_.end()).size() > 0; });
         if (!any) return;
+        charge_memory(uint64_t(header_.faces) * 4 * sizeof(float), "the colours of its faces");
         ArrayXf::Dense C = ArrayXf::Dense::Constant(Eigen::Index(header_.faces), 4, NAN);
         std::atomic<size_t> mapped{0}, colored{0};
         parallel_for(rows.chunks.size(), 1, [&](size_t i) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/crease.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -25,6 +26,12 @@ constexpr size_t stl_chunk_bytes = 1 << 20;
 
 /// Positions of triangle corners, three floats each.
 using Corners = Eigen::VectorXf;
+
+/// Room for the corners, of which three make a face.
+Corners make_corners(size_t numbers) {
+    charge_memory(uint64_t(numbers) * sizeof(float) + uint64_t(numbers) / 3 * sizeof(int32_t), "its facets");
+    return Corners(Eigen::Index(numbers));
+}
 
 size_t declared_facets(const Source& source) {
     if (source.bytes.size() < header_bytes) return 0;
@@ -53,7 +60,7 @@ Corners read_binary(const Source& source) {
         fail(source, fmt::format("truncated: {} facets take {} bytes, but the file has {}", count,
                                  header_bytes + facet_bytes * count, source.bytes.size()));
     if (count > INT32_MAX / 3) fail(source, "more facets than a mesh can hold");
-    Corners corners(Eigen::Index(count * 9));
+    Corners corners = make_corners(count * 9);
     Progress progress(source, source.bytes.size());
     parallel_chunks(count, stl_grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
@@ -112,7 +119,7 @@ Corners read_text(const Source& given) {
     std::vector<size_t> begin{0};
     for (const auto& part : parts) begin.push_back(begin.back() + part.size());
     if (begin.back() / 3 > INT32_MAX) fail(source, "more facets than a mesh can hold");
-    Corners corners(Eigen::Index(begin.back()));
+    Corners corners = make_corners(begin.back());
     parallel_for(parts.size(), 1,
                  [&](size_t i) { std::copy(parts[i].begin(), parts[i].end(), corners.data() + begin[i]); });
     return corners;
@@ -127,6 +134,7 @@ void weld(Corners&& corners, MeshData& mesh) {
     auto* remap = reinterpret_cast<unsigned*>(F.data());
     const size_t vertices =
         meshopt_generateVertexRemap(remap, nullptr, count, corners.data(), count, 3 * sizeof(float));
+    charge_memory(uint64_t(vertices) * 3 * sizeof(float), "its vertices");
     Array3f::Dense V(Eigen::Index(vertices), 3);
     meshopt_remapVertexBuffer(V.data(), corners.data(), count, 3 * sizeof(float), remap);
     mesh.V = std::move(V);
