@@ -25,6 +25,22 @@ def test_wrong_commands_exit_with_2(easypbr, arguments, hint):
     assert hint in done.stderr and done.stderr.count("\n") == 1 and done.stdout == ""
 
 
+def test_options_end_at_two_dashes(easypbr, box, tmp_path):
+    """Behind them a name may begin with a dash."""
+    (tmp_path / "-dash.obj").write_bytes(box.read_bytes())
+    easypbr("render", "-o", "out.png", "--size", "32x24", "--", "-dash.obj")
+    assert png.read(tmp_path / "out.png").shape[:2] == (24, 32)
+    assert json.loads(easypbr("info", "--json", "--", "-dash.obj").stdout)["faces"] == 12
+    assert json.loads(easypbr("info", "--json", box, "--").stdout)["faces"] == 12
+    easypbr("--", "convert", "--", "-dash.obj", "-copy.ply")
+    assert (tmp_path / "-copy.ply").exists()
+
+
+def test_what_follows_two_dashes_is_no_option(easypbr, box):
+    assert "doctor: unexpected argument 'now'" in easypbr("doctor", "--", "now", code=2).stderr
+    assert "unknown option '--jsn'" in easypbr("info", "--jsn", "--", box, code=2).stderr
+
+
 def test_info_counts_a_mesh(easypbr, box):
     info = json.loads(easypbr("info", "--json", box).stdout)
     assert info["faces"] == 12 and info["nodes"] == 1 and "uv" in info["attributes"]

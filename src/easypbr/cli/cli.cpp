@@ -39,8 +39,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
     return names;
 }
 
-[[noreturn]] void fail_without_subcommand(const CLI::App& app) {
-    const std::vector<std::string> rest = app.remaining();
+[[noreturn]] void fail_without_subcommand(const CLI::App& app, const std::vector<std::string>& rest) {
     if (rest.empty())
         throw UsageError("expected a command: " + fmt::format("{}", fmt::join(subcommand_names(app), ", ")));
     std::string hint = did_you_mean(rest.front(), subcommand_names(app));
@@ -81,16 +80,31 @@ std::string option_hint(const CLI::App& command, const std::string& name) {
     return setting.empty() ? "" : fmt::format(" (it is called {})", option_for(command, setting));
 }
 
+/// What nothing has taken, without the "--" that ends options.
+struct Extras {
+    explicit Extras(const CLI::App& app) : words(app.remaining()) {
+        const auto end_of_options = std::ranges::find(words, "--");
+        if (end_of_options == words.end()) return;
+        are_arguments = end_of_options == words.begin();
+        words.erase(end_of_options);
+    }
+
+    std::vector<std::string> words;
+    bool are_arguments = false;  ///< whatever they begin with
+};
+
 /// Extras are allowed while parsing, so that a misspelt option is reported before what it left missing.
 void reject_extras(const CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
-    if (commands.empty()) fail_without_subcommand(app);
+    if (commands.empty()) fail_without_subcommand(app, Extras(app).words);
     const CLI::App& command = *commands.front();
-    for (const std::vector<std::string>& rest : {command.remaining(), app.remaining()}) {
-        if (rest.empty()) continue;
-        if (!rest.front().starts_with("-"))
-            throw UsageError(fmt::format("{}: unexpected argument '{}'", command.get_name(), rest.front()));
-        const std::string name = rest.front().substr(0, rest.front().find('='));
+    for (const CLI::App* each : {&command, &app}) {
+        const Extras extras(*each);
+        if (extras.words.empty()) continue;
+        const std::string& first = extras.words.front();
+        if (extras.are_arguments || !first.starts_with("-"))
+            throw UsageError(fmt::format("{}: unexpected argument '{}'", command.get_name(), first));
+        const std::string name = first.substr(0, first.find('='));
         throw UsageError(
             fmt::format("{}: unknown option '{}'{}", command.get_name(), name, option_hint(command, name)));
     }
