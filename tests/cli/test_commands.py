@@ -12,6 +12,36 @@ import exr
 import png
 
 
+@pytest.mark.parametrize("command, message", [
+    ("render a.obj -o a.png --size 0x0", "0x0"),
+    ("render a.obj -o a.png --size 65536x65536", "65536x65536"),
+    ("render a.obj -o a.png --turntable 3 --fps 0", "--fps: expected a number above 0, got 0"),
+    ("render a.obj -o a.png --turntable 3 --fps nan", "--fps: expected a number above 0, got nan"),
+    ("render a.obj -o a.html --orbit 0x0", "expected 1 to 360 columns, got 0"),
+    ("render a.obj -o a.html --page-limit 0", "got a limit of 0"),
+    ("render a.obj -o a.png --size 32x24 --focus 48,36", "expected a pixel of the picture of 32x24, got (48, 36)"),
+    ("render a.obj -o a.png --preset darkk", "did you mean 'dark'"),
+    ("render a.obj -o a.png --label-map foo", "there is no label map 'foo'"),
+    ("render a.obj -o a.png --device foo", "there is no device 'foo'; expected auto, gl or cpu"),
+    ("view a.obj --screenshot a.png --preset darkk", "did you mean 'dark'"),
+    ("view a.obj --screenshot a.png --size 0x9", "0x9"),
+    ("view a.obj --screenshot a.png --ui-scale 0", "scale"),
+    ("demo -o a.png --samples 0", "image.samples"),
+    ("demo -o a.png --size 0x0", "0x0"),
+    ("serve a.obj --preset darkk", "did you mean 'dark'"),
+    ("serve a.obj --port 65536", "expected 0 to 65535, got 65536"),
+    ("serve a.obj --max-clients 0", "expected 1 to 1000, got 0"),
+    ("serve a.obj --own-views 65", "expected 0 to 64, got 65"),
+    ("serve a.obj --bind foo", "bind 'foo': expected an address"),
+    ("serve a.obj --origin foo", "origin 'foo'"),
+])  # fmt: skip
+def test_values_that_options_alone_show_to_be_wrong_exit_with_2(easypbr, tmp_path, command, message):
+    shapes.write_box(tmp_path / "a.obj")
+    (line,) = easypbr(*command.split(), code=2).stderr.splitlines()
+    assert line.startswith("easypbr: error: ") and message in line
+    assert [path.name for path in tmp_path.iterdir()] == ["a.obj"]
+
+
 def test_version_and_help_go_to_standard_output(easypbr):
     assert easypbr("--version").stdout.startswith("easypbr 0.")
     assert "render" in easypbr("--help").stdout
@@ -230,7 +260,7 @@ def test_doctor_says_that_opengl_is_not_there(without_opengl):
 def test_devices_are_chosen_by_name(easypbr, environment, sphere):
     for place in (("--device", "cpu", "render"), ("render", "--device", "gl")):
         easypbr(*place, sphere, "-o", "out.png", "--size", "16x16")
-    assert "expected auto, gl or cpu" in easypbr("render", sphere, "-o", "x.png", "--device", "cpuu", code=1).stderr
+    assert "expected auto, gl or cpu" in easypbr("render", sphere, "-o", "x.png", "--device", "cpuu", code=2).stderr
     environment["EASYPBR_DEVICE"] = "fast"
     try:
         assert "expected auto, gl or cpu" in easypbr("render", sphere, "-o", "x.png", code=1).stderr
@@ -263,7 +293,7 @@ def test_demo_writes_a_picture_and_says_where(easypbr, tmp_path):
 
 def test_demo_never_writes_what_it_cannot(easypbr, tmp_path):
     easypbr("demo", "-o", "missing/demo.png", code=1)
-    easypbr("demo", "-o", "demo.png", "--size", "0x0", code=1)
+    easypbr("demo", "-o", "demo.png", "--size", "0x0", code=2)
     assert list(tmp_path.iterdir()) == []
 
 

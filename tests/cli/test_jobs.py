@@ -86,16 +86,15 @@ def test_output_is_checked_before_anything_is_read(render, tmp_path, output):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("size, code", [("0x600", 1), ("-4x3", 1), ("100000x100000", 1), ("99999999999999999999x3", 1),
-                                        ("large", 2), ("800", 2), ("8.5x3", 2), ("800x600x3", 2)])
-def test_impossible_sizes_are_refused(render, sphere, tmp_path, size, code):
-    assert size in one_error(render(sphere, "-o", "out.png", "--size", size, code=code))
+@pytest.mark.parametrize("size", ["0x600", "-4x3", "100000x100000", "99999999999999999999x3", "large", "800", "8.5x3", "800x600x3"])
+def test_impossible_sizes_are_refused(render, sphere, tmp_path, size):
+    assert size in one_error(render(sphere, "-o", "out.png", "--size", size, code=2))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_size_beyond_the_limit_is_refused(render, sphere, tmp_path):
     # Pictures are drawn in tiles up to the library's limit.
-    assert "65536" in one_error(render(sphere, "-o", "out.png", "--size", "65537x16", code=1))
+    assert "65536" in one_error(render(sphere, "-o", "out.png", "--size", "65537x16", code=2))
     assert list(tmp_path.iterdir()) == []
 
 

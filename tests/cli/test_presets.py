@@ -71,7 +71,7 @@ def test_a_settings_file_wins_over_a_preset(render, sphere, tmp_path):
 
 
 def test_wrong_presets_are_errors(render, sphere, tmp_path):
-    assert "did you mean 'paper'" in one_error(render(sphere, "-o", "out.png", "--preset", "papr", code=1))
+    assert "did you mean 'paper'" in one_error(render(sphere, "-o", "out.png", "--preset", "papr", code=2))
     assert "missing.json" in one_error(render(sphere, "-o", "out.png", "--preset", "missing.json", code=1))
     write_preset(tmp_path / "wrong.json", {"ground": {"mod": "shadow"}})
     assert "ground.mode" in one_error(render(sphere, "-o", "out.png", "--preset", "wrong.json", code=1))

@@ -21,7 +21,7 @@ def test_bad_styles_exit_with_2_before_anything_is_drawn(render, box, tmp_path, 
 
 
 def test_label_maps_are_found_before_anything_is_drawn(render, box, tmp_path):
-    assert "did you mean 'cityscapes'" in render(box, "-o", "out.png", "--label-map", "cityscape", code=1).stderr
+    assert "did you mean 'cityscapes'" in render(box, "-o", "out.png", "--label-map", "cityscape", code=2).stderr
     assert "none.json" in render(box, "-o", "out.png", "--label-map", "none.json", code=1).stderr
     assert not (tmp_path / "out.png").exists()
 

@@ -46,6 +46,9 @@ struct ServeOptions {
     std::filesystem::path files;
 };
 
+/// Throws ArgumentError for options out of range, whatever files and this machine hold.
+void check(const ServeOptions& options);
+
 struct ServerClient {
     uint64_t id = 0;
     bool controls = false;  ///< the shared view, or its own

@@ -24,6 +24,12 @@ void check_picture_size(Vec2i size) {
                         size.x(), size.y(), max_picture_pixels));
 }
 
+void check_focus(Vec2i pixel, Vec2i size) {
+    if (pixel.minCoeff() < 0 || pixel.x() >= size.x() || pixel.y() >= size.y())
+        throw ArgumentError(fmt::format("focus: expected a pixel of the picture of {}x{}, got ({}, {})",
+                                        size.x(), size.y(), pixel.x(), pixel.y()));
+}
+
 struct Session::Refined {
     Prepared prepared;
     Drawn frames_drawn;  ///< of all frames, when they are finished
@@ -352,9 +358,7 @@ Moment Session::moment(std::optional<Vec2i> size) {
 
 double Session::focus_at(int x, int y, std::optional<Vec2i> size) {
     const Vec2i pixels = size_or(size);
-    if (x < 0 || y < 0 || x >= pixels.x() || y >= pixels.y())
-        throw ArgumentError(fmt::format("focus: expected a pixel of the picture of {}x{}, got ({}, {})",
-                                        pixels.x(), pixels.y(), x, y));
+    check_focus({x, y}, pixels);
     const double depth = render_layers({"depth"}, pixels).at("depth").at<float>(x, y)[0];
     if (!(depth > 0))
         throw ArgumentError(fmt::format("focus: pixel ({}, {}) shows nothing to focus on", x, y));

@@ -45,6 +45,9 @@ struct Timing {
 /// Throws ArgumentError unless a picture may be of `size`: sides from 1 to 65536 pixels, 2^30 in all.
 void check_picture_size(Vec2i size);
 
+/// Throws ArgumentError unless a picture of `size` has the pixel, (0, 0) the upper left one.
+void check_focus(Vec2i pixel, Vec2i size);
+
 /// May be used from any thread, by one at a time; load_environment() alone may run beside context_info().
 /// The GL context is made at the first picture. One that is lost is replaced, and everything is uploaded and
 /// drawn again: see KeptDevice.

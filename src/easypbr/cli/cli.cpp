@@ -116,7 +116,7 @@ void add_commands(CLI::App& app, Job& job) {
     app.add_option_function<std::string>(
            "--device",
            [](const std::string& name) {
-               draw_device_named(name);
+               of_options([&] { draw_device_named(name); });
                ::setenv("EASYPBR_DEVICE", name.c_str(), 1);
            },
            "What draws: gl, cpu, or auto for a GPU where there is one, else the CPU (EASYPBR_DEVICE)")

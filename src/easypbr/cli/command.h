@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "easypbr/core/error.h"
+
 namespace easypbr::cli {
 
 namespace fs = std::filesystem;
@@ -38,13 +40,35 @@ void add_cache(CLI::App& app, Job& job);
 void add_completion(CLI::App& app, Job& job);
 void add_man(CLI::App& app, Job& job);
 
-/// Makes `command` set `job` to run(options) when it is parsed; Options is a struct that `declare` ties to
-/// the command's options.
+/// Calls `check`, which looks at options alone, not at what files hold: what the library refuses there makes
+/// the command itself wrong. Throws UsageError for its ArgumentError or NameError.
+template <class Check>
+auto of_options(Check&& check) {
+    try {
+        return check();
+    } catch (const ArgumentError& error) {
+        throw UsageError(error.what());
+    } catch (const NameError& error) {
+        throw UsageError(error.what());
+    }
+}
+
 template <class Options>
-void set_job(CLI::App& command, Job& job, void (*declare)(CLI::App&, Options&), int (*run)(const Options&)) {
+void check_nothing(const Options&) {}
+
+/// Makes `command` set `job` to check(options), as of_options() calls it, and run(options) when it is parsed;
+/// Options is a struct that `declare` ties to the command's options.
+template <class Options>
+void set_job(CLI::App& command, Job& job, void (*declare)(CLI::App&, Options&), int (*run)(const Options&),
+             void (*check)(const Options&) = check_nothing<Options>) {
     const auto options = std::make_shared<Options>();
     declare(command, *options);
-    command.callback([&job, options, run] { job = [options, run] { return run(*options); }; });
+    command.callback([&job, options, run, check] {
+        job = [options, run, check] {
+            of_options([&] { check(*options); });
+            return run(*options);
+        };
+    });
 }
 
 /// Throws UsageError "COMMAND: expected WHAT" unless `given`.

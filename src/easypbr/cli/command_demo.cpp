@@ -10,6 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
@@ -17,7 +18,7 @@ namespace {
 
 struct DemoOptions {
     std::string output = "demo.png", size = "1280x720";
-    int samples = 8;
+    std::string samples = "8";
 };
 
 void declare_demo(CLI::App& command, DemoOptions& options) {
@@ -26,6 +27,18 @@ void declare_demo(CLI::App& command, DemoOptions& options) {
     command.add_option("--samples", options.samples, "Number of jittered samples averaged per pixel")
         ->option_text("N")
         ->capture_default_str();
+}
+
+/// The number of --samples, as the setting takes it.
+int samples_of(const DemoOptions& options) {
+    Settings settings;
+    set_from_text(settings, "image.samples", options.samples);
+    return settings.image.samples;
+}
+
+void check_demo(const DemoOptions& options) {
+    parse_size(options.size);
+    samples_of(options);
 }
 
 int run_demo(const DemoOptions& options) {
@@ -42,7 +55,7 @@ int run_demo(const DemoOptions& options) {
     times.lap("make the scene");
     session.context_info();
     times.lap("open an OpenGL context");
-    const Image image = session.render({size, options.samples, encoding});
+    const Image image = session.render({size, samples_of(options), encoding});
     times.lap("draw");
     io::save_image(image, options.output);
     times.lap("write the picture");
@@ -55,7 +68,7 @@ int run_demo(const DemoOptions& options) {
 
 void add_demo(CLI::App& app, Job& job) {
     set_job<DemoOptions>(*app.add_subcommand("demo", "Render the embedded demo scene"), job, declare_demo,
-                         run_demo);
+                         run_demo, check_demo);
 }
 
 }  // namespace easypbr::cli

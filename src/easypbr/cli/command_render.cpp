@@ -98,6 +98,8 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         drawing::check_line_drawing(picture.output);
     else if (picture.output != "-" && !picture.output.empty())
         app::check_picture(picture.output, settings);
+    if (const auto pixel = parse_focus(options.focus))
+        of_options([&] { app::check_focus(*pixel, settings.image.size); });
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
     for (const std::string& file : picture.files)
@@ -328,7 +330,6 @@ class RenderJob {
 };
 
 int run_render(const RenderOptions& options) {
-    check_usage(options);
     if (options.quiet) be_quiet();
     if (options.open && options.output == "-") throw UsageError("render: --open needs a file: -o FILE");
     if (options.output == "-" && ::isatty(STDOUT_FILENO))
@@ -350,7 +351,7 @@ int run_render(const RenderOptions& options) {
 
 void add_render(CLI::App& app, Job& job) {
     set_job<RenderOptions>(*app.add_subcommand("render", "Render mesh files to an image"), job,
-                           declare_render_options, run_render);
+                           declare_render_options, run_render, check_usage);
 }
 
 }  // namespace easypbr::cli

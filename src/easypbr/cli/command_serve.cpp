@@ -115,10 +115,24 @@ void tell_urls(const remote::Server& server) {
     std::fflush(stdout);
 }
 
+remote::ServeOptions server_options_of(const ServeCommand& options) {
+    remote::ServeOptions server = options.server;
+    server.socket = options.socket;
+    server.token_file = options.token_file;
+    server.files = options.files;
+    return server;
+}
+
+void check_serve(const ServeCommand& options) {
+    check_input("serve", options.shown.files);
+    require(!options.shown.files.empty() || !options.files.empty(), "serve",
+            "at least one FILE, or --files FOLDER");
+    check(options.shown.start);
+    remote::check(server_options_of(options));
+}
+
 int run_serve(const ServeCommand& options) {
     const ShownFiles& shown = options.shown;
-    check_input("serve", shown.files);
-    require(!shown.files.empty() || !options.files.empty(), "serve", "at least one FILE, or --files FOLDER");
     app::Session session;
     apply(shown.start, session);
     apply(shown_look(shown), session.settings());
@@ -126,12 +140,8 @@ int run_serve(const ServeCommand& options) {
     show_files(shown, session, [&](size_t, const std::string& name, const io::LoadedScene& loaded) {
         if (!loaded.animations.empty()) animations.emplace_back(name, loaded.animations);
     });
-    remote::ServeOptions server_options = options.server;
-    server_options.socket = options.socket;
-    server_options.token_file = options.token_file;
-    server_options.files = options.files;
     const Signals signals;
-    remote::Server server(session.scene(), session.settings(), server_options);
+    remote::Server server(session.scene(), session.settings(), server_options_of(options));
     for (const auto& [name, each] : animations) server.add_animations(name, each);
     tell_urls(server);
     while (!stopped) std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -143,7 +153,7 @@ int run_serve(const ServeCommand& options) {
 
 void add_serve(CLI::App& app, Job& job) {
     set_job<ServeCommand>(*app.add_subcommand("serve", "Show mesh files in the browsers of other machines"),
-                          job, declare_serve, run_serve);
+                          job, declare_serve, run_serve, check_serve);
 }
 
 }  // namespace easypbr::cli

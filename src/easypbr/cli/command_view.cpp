@@ -69,13 +69,19 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
         if (view.player().has(name)) return view.player().play(name, animation);
 }
 
+void check_view(const ViewOptions& options) {
+    check_input("view", options.shown.files);
+    check(options.shown.start);
+    parse_size(options.size);
+}
+
 int run_view(const ViewOptions& options) {
     const ShownFiles& shown = options.shown;
-    check_input("view", shown.files);
     Viewer view{Scene()};
     apply_user_config(shown.files, view.settings());
     apply(shown.start, view.session());
     apply(look_of_view(options), view.settings());
+    of_options([&] { view.live().set_panel_scale(options.panel_scale); });
     add_passes(options.passes, view.session());
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
     show_files(shown, view.session(), [&](size_t i, const std::string& name, const io::LoadedScene& loaded) {
@@ -85,7 +91,6 @@ int run_view(const ViewOptions& options) {
     });
     if (!options.animation.empty()) play(view, unique_names(shown.files), options.animation);
     if (!options.path.empty()) view.live().drawing().path().editor.set(io::load_camera_path(options.path));
-    view.live().set_panel_scale(options.panel_scale);
     if (options.light) view.live().state().screen.theme = gui::Theme::light;
     if (options.screenshot.empty())
         view.show();
@@ -98,7 +103,7 @@ int run_view(const ViewOptions& options) {
 
 void add_view(CLI::App& app, Job& job) {
     set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in an interactive window"), job,
-                         declare_view, run_view);
+                         declare_view, run_view, check_view);
 }
 
 }  // namespace easypbr::cli

@@ -247,8 +247,8 @@ int parse_side(std::string_view text, const std::string& whole) {
     if (text.empty() || end != text.data() + text.size() || error == std::errc::invalid_argument)
         throw UsageError(fmt::format("--size: expected WIDTHxHEIGHT, got '{}'", whole));
     if (error != std::errc() || side < 1 || side > max_image_side)
-        throw ArgumentError(
-            fmt::format("picture size {}: expected width and height from 1 to {}", whole, max_image_side));
+        throw UsageError(
+            fmt::format("--size {}: expected width and height from 1 to {}", whole, max_image_side));
     return int(side);
 }
 
@@ -277,6 +277,10 @@ void declare_settings(CLI::App& command, StartSettings& start, std::vector<std::
         ->option_text("NAME|FILE");
     command.add_option("--settings", start.settings, "Start from a file that --save-settings wrote")
         ->option_text("FILE");
+}
+
+void check(const StartSettings& start) {
+    if (!start.preset.empty()) io::check_preset(start.preset);
 }
 
 void apply(const StartSettings& start, app::Session& session) {
@@ -312,8 +316,10 @@ void add_passes(const std::vector<std::string>& passes, app::Session& session) {
 Vec2i parse_size(const std::string& text) {
     const size_t at = text.find_first_of("x,");
     if (at == text.npos) throw UsageError(fmt::format("--size: expected WIDTHxHEIGHT, got '{}'", text));
-    return {parse_side(std::string_view(text).substr(0, at), text),
-            parse_side(std::string_view(text).substr(at + 1), text)};
+    const Vec2i size(parse_side(std::string_view(text).substr(0, at), text),
+                     parse_side(std::string_view(text).substr(at + 1), text));
+    of_options([&] { app::check_picture_size(size); });
+    return size;
 }
 
 app::OrbitPageOptions page_options_of(const RenderOptions& options) {

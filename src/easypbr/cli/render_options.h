@@ -81,15 +81,19 @@ void declare_render_options(CLI::App& command, RenderOptions& options);
 /// The options --preset, --settings and --set.
 void declare_settings(CLI::App& command, StartSettings& start, std::vector<std::string>& values);
 
+/// Throws NameError for a preset that is neither built in nor a file's name.
+void check(const StartSettings& start);
+
 /// Sets what --preset says, then what --settings says. Throws as app::load_settings() and
 /// app::apply_preset().
 void apply(const StartSettings& start, app::Session& session);
 
-/// Throws UsageError for options that contradict each other or lack another.
+/// Looks at the options alone. Throws UsageError for those that contradict each other or lack another,
+/// ArgumentError or NameError for values that the library refuses.
 void check_usage(const RenderOptions& options);
 
 /// Sets what the options say, --set last; the rest stays as it is. Throws UsageError for a value that cannot
-/// be understood, FileError or FormatError for a pose file, ArgumentError for a picture size out of range.
+/// be understood, FileError or FormatError for a pose file.
 void apply(const RenderOptions& options, Settings& settings);
 
 /// What a page is written with. Throws UsageError.
@@ -106,8 +110,8 @@ void declare_passes(CLI::App& command, std::vector<std::string>& passes);
 /// What --pass names, "FILE" or "STAGE=FILE". Throws UsageError for an unknown stage, FileError.
 void add_passes(const std::vector<std::string>& passes, app::Session& session);
 
-/// Width and height from "800x600" or "800,600". Throws UsageError when it is not of this form, ArgumentError
-/// when it is out of range.
+/// Width and height from "800x600" or "800,600". Throws UsageError when it is not of this form, or out of
+/// range.
 Vec2i parse_size(const std::string& text);
 
 }  // namespace easypbr::cli

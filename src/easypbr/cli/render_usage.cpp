@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
@@ -9,6 +10,7 @@
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/truth_layers.h"
 #include "easypbr/core/file.h"
+#include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/io/video/video.h"
 
 namespace easypbr::cli {
@@ -23,7 +25,7 @@ void check_page_usage(const RenderOptions& options) {
     }
     if (options.records()) throw UsageError("render: an HTML page is no recording: give --orbit alone");
     if (!options.layers.empty()) throw UsageError("render: --layers are of one picture, not of an HTML page");
-    page_options_of(options);
+    remote::check_orbit_options(page_options_of(options));
 }
 
 void check_line_drawing_usage(const RenderOptions& options) {
@@ -37,6 +39,8 @@ void check_line_drawing_usage(const RenderOptions& options) {
 }
 
 void check_recording_usage(const RenderOptions& options) {
+    if (options.fps && !(*options.fps > 0 && std::isfinite(*options.fps)))
+        throw UsageError(fmt::format("--fps: expected a number above 0, got {}", *options.fps));
     if (options.animation_time && options.animation.empty())
         throw UsageError("render: --animation-time needs --animation");
     if (!options.records()) {
@@ -44,8 +48,6 @@ void check_recording_usage(const RenderOptions& options) {
         if (fps_is_idle || !options.codec.empty())
             throw UsageError(fmt::format("render: {} needs --turntable, --camera-path or --animation",
                                          fps_is_idle ? "--fps" : "--codec"));
-        if (options.fps && !(*options.fps > 0))
-            throw UsageError(fmt::format("--fps: expected a number above 0, got {}", *options.fps));
         if (io::is_video(options.output))
             throw UsageError("render: a video needs --turntable, --camera-path or --animation");
         return;
@@ -68,6 +70,8 @@ void check_usage(const RenderOptions& options) {
     check_page_usage(options);
     check_line_drawing_usage(options);
     parse_styles(options.styles, unique_names(options.files));
+    check(options.start);
+    if (!options.label_map.empty()) io::check_label_map(options.label_map);
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
     if (!options.camera_pose.empty())
         for (const RenderOptions::Shorthand& shorthand : options.shorthands)

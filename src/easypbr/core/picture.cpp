@@ -30,8 +30,7 @@ const std::vector<std::string>& draw_device_names() {
 DrawDevice draw_device_named(const std::string& name) {
     const auto found = std::ranges::find(draw_device_names(), name);
     if (found == draw_device_names().end())
-        throw NameError(fmt::format("there is no device '{}'{}; expected auto, gl or cpu", name,
-                                    did_you_mean(name, draw_device_names())));
+        throw NameError(fmt::format("there is no device '{}'; expected auto, gl or cpu", name));
     return DrawDevice(found - draw_device_names().begin());
 }
 

@@ -31,6 +31,13 @@ using Local = net::local::stream_protocol;
 
 constexpr double lag_memory = 0.8;
 
+net::ip::address address_of(const std::string& bind) {
+    Code error;
+    const auto address = net::ip::make_address(bind == "localhost" ? "127.0.0.1" : bind, error);
+    if (error) throw ArgumentError(fmt::format("bind '{}': expected an address", bind));
+    return address;
+}
+
 void remove_stale(const std::filesystem::path& path) {
     std::error_code ignored;
     if (!std::filesystem::is_socket(path, ignored)) return;
@@ -43,6 +50,10 @@ void remove_stale(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void check_address(const std::string& bind) {
+    address_of(bind);
+}
 
 class Network::Loop : public Owner, public std::enable_shared_from_this<Network::Loop> {
   public:
@@ -103,10 +114,7 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
   private:
     void listen_tcp() {
         Code error;
-        const auto address =
-            net::ip::make_address(options_.bind == "localhost" ? "127.0.0.1" : options_.bind, error);
-        if (error) throw ArgumentError(fmt::format("bind '{}': expected an address", options_.bind));
-        const Tcp::endpoint place(address, static_cast<unsigned short>(options_.port));
+        const Tcp::endpoint place(address_of(options_.bind), static_cast<unsigned short>(options_.port));
         tcp_.open(place.protocol());
         tcp_.set_option(net::socket_base::reuse_address(true));
         tcp_.bind(place, error);

@@ -18,6 +18,9 @@ struct NetworkOptions {
     size_t most_clients = 16;
 };
 
+/// Throws ArgumentError for what is no address that can be listened on.
+void check_address(const std::string& bind);
+
 class Network : public Wire {
   public:
     /// Listens. Throws ArgumentError for what is no address, FileError for a socket that cannot be made,

@@ -194,7 +194,7 @@ void check_size(const Vec2i& size) {
 
 }  // namespace
 
-void check_orbit_page(const fs::path& path, const Settings& settings, const app::OrbitPageOptions& options) {
+void check_orbit_options(const app::OrbitPageOptions& options) {
     app::check_orbit_grid(options.columns, options.rows, options.row_step_deg);
     if (options.format != "webp" && options.format != "jpeg")
         throw ArgumentError(
@@ -206,6 +206,10 @@ void check_orbit_page(const fs::path& path, const Settings& settings, const app:
     if (!(options.most_megabytes >= least))
         throw ArgumentError(fmt::format("orbit page: {} pictures need {} MB at least, got a limit of {}",
                                         options.columns * options.rows, least, options.most_megabytes));
+}
+
+void check_orbit_page(const fs::path& path, const Settings& settings, const app::OrbitPageOptions& options) {
+    check_orbit_options(options);
     check_size(options.size.value_or(settings.image.size));
     if (settings.background.mode == BackgroundMode::transparent && options.format == "jpeg")
         throw ArgumentError(fmt::format(

@@ -14,8 +14,11 @@ struct Settings;
 
 namespace remote {
 
+/// Throws ArgumentError for options out of range, and a limit too small for the pictures.
+void check_orbit_options(const app::OrbitPageOptions& options);
+
 /// Throws, before anything is drawn, when the page cannot be written: FileError; ArgumentError for options
-/// out of range, a limit too small for the pictures, and transparency in JPEG.
+/// that check_orbit_options() refuses, a size out of range, and transparency in JPEG.
 void check_orbit_page(const std::filesystem::path& path, const Settings& settings,
                       const app::OrbitPageOptions& options);
 

@@ -31,6 +31,7 @@ NetworkOptions network_options(const ServeOptions& options) {
     if (options.own_views < 0 || options.own_views > most_own_views)
         throw ArgumentError(
             fmt::format("own_views: expected 0 to {}, got {}", most_own_views, options.own_views));
+    if (options.socket.empty()) check_address(options.bind);
     NetworkOptions network;
     network.bind = options.bind;
     network.port = options.port;
@@ -39,10 +40,14 @@ NetworkOptions network_options(const ServeOptions& options) {
     return network;
 }
 
-bool offers_video(const ServeOptions& options) {
-    if (options.codec == "jpeg") return false;
-    if (options.codec != "auto" && options.codec != "h264")
+void check_codec(const ServeOptions& options) {
+    if (options.codec != "auto" && options.codec != "h264" && options.codec != "jpeg")
         throw ArgumentError(fmt::format("codec '{}': expected auto, h264 or jpeg", options.codec));
+}
+
+bool offers_video(const ServeOptions& options) {
+    check_codec(options);
+    if (options.codec == "jpeg") return false;
     if (options.codec == "auto") return true;
     if (const std::string why = video_refusal(); !why.empty()) throw FormatError(why);
     return true;
@@ -61,6 +66,11 @@ void warn_of_strangers(const ServeOptions& options) {
 }
 
 }  // namespace
+
+void check(const ServeOptions& options) {
+    network_options(options);
+    check_codec(options);
+}
 
 struct Server::Parts {
     Parts(const Scene& scene, const Settings& settings, const ServeOptions& given)

@@ -26,6 +26,9 @@ LabelMap load_label_map(const std::filesystem::path& path);
 /// Writes JSON, or the first text form for any other extension but YAML's. Throws FileError, FormatError.
 void save_label_map(const LabelMap& map, const std::filesystem::path& path);
 
+/// Throws NameError with the nearest name for what is neither a built-in map nor the name of a file.
+void check_label_map(const std::string& name_or_path);
+
 /// A built-in map by its name, else a file. Throws as load_label_map() does, NameError with the nearest name
 /// for what is neither.
 std::shared_ptr<const LabelMap> find_label_map(const std::string& name_or_path);

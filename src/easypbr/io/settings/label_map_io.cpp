@@ -143,6 +143,16 @@ std::string label_map_json(const LabelMap& map) {
     return root.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
+bool is_built_in(const std::string& name) {
+    const auto& names = built_in_label_map_names();
+    return std::ranges::find(names, name) != names.end();
+}
+
+bool is_label_map_file(const fs::path& path) {
+    std::error_code ignored;
+    return path.has_extension() || path.has_parent_path() || fs::exists(path, ignored);
+}
+
 }  // namespace
 
 LabelMap load_label_map(const fs::path& path) {
@@ -172,13 +182,14 @@ void save_label_map(const LabelMap& map, const fs::path& path) {
     write_file(path, format_label_map(map, path));
 }
 
+void check_label_map(const std::string& name_or_path) {
+    if (!is_label_map_file(name_or_path)) built_in_label_map(name_or_path);
+}
+
 std::shared_ptr<const LabelMap> find_label_map(const std::string& name_or_path) {
-    const auto& names = built_in_label_map_names();
-    if (std::ranges::find(names, name_or_path) != names.end()) return built_in_label_map(name_or_path);
-    const fs::path path = name_or_path;
-    const bool is_path = path.has_extension() || path.has_parent_path() || fs::exists(path);
-    if (!is_path) return built_in_label_map(name_or_path);  // its error names the nearest one
-    return std::make_shared<const LabelMap>(load_label_map(path));
+    if (is_built_in(name_or_path) || !is_label_map_file(name_or_path))
+        return built_in_label_map(name_or_path);  // its error names the nearest one
+    return std::make_shared<const LabelMap>(load_label_map(name_or_path));
 }
 
 }  // namespace easypbr::io

@@ -38,16 +38,21 @@ const std::vector<std::string>& preset_names() {
     return names;
 }
 
+void check_preset(const std::string& name_or_path) {
+    const bool is_known = std::ranges::find(preset_names(), name_or_path) != preset_names().end();
+    if (!is_known && !is_preset_file(name_or_path))
+        throw NameError(fmt::format("there is no preset '{}'{}; expected one of {}, or a settings file",
+                                    name_or_path, did_you_mean(name_or_path, preset_names()),
+                                    fmt::join(preset_names(), ", ")));
+}
+
 void apply_preset(const std::string& name_or_path, SettingsFile& file) {
     const auto known = std::ranges::find(preset_names(), name_or_path);
     if (known != preset_names().end()) {
         const BuiltInPreset& preset = built_in_presets[known - preset_names().begin()];
         return apply_settings(std::string(preset.text), "preset " + name_or_path, file);
     }
-    if (!is_preset_file(name_or_path))
-        throw NameError(fmt::format("there is no preset '{}'{}; expected one of {}, or a settings file",
-                                    name_or_path, did_you_mean(name_or_path, preset_names()),
-                                    fmt::join(preset_names(), ", ")));
+    check_preset(name_or_path);
     const FileBytes bytes(name_or_path);
     apply_settings(std::string(bytes.text()), name_or_path, file);
 }
