@@ -42,6 +42,26 @@ def test_values_that_options_alone_show_to_be_wrong_exit_with_2(easypbr, tmp_pat
     assert [path.name for path in tmp_path.iterdir()] == ["a.obj"]
 
 
+@pytest.mark.parametrize("command, message", [
+    ("cache --limit -1", "--limit: expected a number of 0 or more, got '-1'"),
+    ("cache --limit nan", "--limit: expected a number of 0 or more, got 'nan'"),
+    ("compare a.png b.png --max-difference -1", "--max-difference: expected a number of 0 or more, got '-1'"),
+    ("compare a.png b.png --max-difference nan", "--max-difference: expected a number of 0 or more, got 'nan'"),
+    ("render a.obj --bit-depth abc", "--bit-depth: expected 8 or 16, got 'abc'"),
+    ("render a.obj --hidden-lines dash", "--hidden-lines: expected none, dashed or solid, got 'dash' (did you mean 'dashed'?)"),
+    ("render a.obj --size 4x4 --size 5x5", "--size: expected it once, got it 2 times: 4x4, 5x5"),
+    ("render a.obj --layers ,", "--layers: expected A,B, got nothing"),
+    ("render a.obj --fps abc", "--fps: expected a number, got 'abc'"),
+    ("render a.obj --turntable 1.5", "--turntable: expected a whole number, got '1.5'"),
+    ("render a.obj --quiet=loud", "--quiet: expected no value, got 'loud'"),
+    ("convert a.obj b.ply --crop-box 1,2,3", "--crop-box: expected 6 values, got 3"),
+    ("convert a.obj b.ply --voxelize abc", "--voxelize: expected a number, got 'abc'"),
+    ("render a.obj --device cpu --device gl", "--device: expected it once, got it 2 times: cpu, gl"),
+])  # fmt: skip
+def test_what_an_option_is_given_wrongly_is_told_in_words(easypbr, command, message):
+    assert easypbr(*command.split(), code=2).stderr == f"easypbr: error: {message} (see 'easypbr --help')\n"
+
+
 def test_version_and_help_go_to_standard_output(easypbr):
     assert easypbr("--version").stdout.startswith("easypbr 0.")
     assert "render" in easypbr("--help").stdout

@@ -13,6 +13,7 @@
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
+#include "easypbr/cli/parse_errors.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -156,7 +157,7 @@ int parse_and_run(int argc, const char* const* argv) {
     } catch (const CLI::Success& wanted) {
         return with_output_written(app.exit(wanted, std::cout, std::cerr));
     } catch (const CLI::ParseError& error) {
-        throw UsageError(error.what());
+        throw UsageError(parse_error_text(app, error));
     }
     reject_extras(app);
     return with_output_written(job());

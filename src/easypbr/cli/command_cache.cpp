@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "easypbr/cli/command.h"
+#include "easypbr/cli/parse_errors.h"
 #include "easypbr/core/cache.h"
 #include "easypbr/core/error.h"
 
@@ -17,8 +18,8 @@ void declare(CLI::App& command, CacheOptions& options) {
     command
         .add_option("--limit", options.limit_gb,
                     "Remove the least recently used entries until the rest takes at most this many GB")
-        ->check(CLI::NonNegativeNumber)
-        ->type_name("GB")
+        ->check(at_least_zero())
+        ->option_text("GB")
         ->excludes(clear);
 }
 

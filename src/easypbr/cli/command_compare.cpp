@@ -4,6 +4,7 @@
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
+#include "easypbr/cli/parse_errors.h"
 #include "easypbr/core/image.h"
 #include "easypbr/io/image/image_io.h"
 
@@ -22,7 +23,7 @@ void declare_compare(CLI::App& command, CompareOptions& options) {
         .add_option("--max-difference", options.max_difference,
                     "Largest difference per channel that passes, in units of the type (0 to 255 for 8 bits)")
         ->option_text("N")
-        ->check(CLI::NonNegativeNumber);
+        ->check(at_least_zero());
 }
 
 int run_compare(const CompareOptions& options) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "easypbr/cli/parse_errors.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/scene/fields.h"
@@ -27,16 +28,6 @@ std::vector<std::string> textures() {
     return names;
 }
 
-/// What CLI11 says of an option's values: "INT:{8,16}".
-std::vector<std::string> listed_values(const std::string& type) {
-    const size_t begin = type.find('{'), end = type.rfind('}');
-    std::vector<std::string> values;
-    if (begin == type.npos || end == type.npos || end < begin) return values;
-    std::istringstream list(type.substr(begin + 1, end - begin - 1));
-    for (std::string value; std::getline(list, value, ',');) values.push_back(value);
-    return values;
-}
-
 /// "stop|skip" of a placeholder whose parts are all words.
 std::vector<std::string> placeholder_values(const std::string& placeholder) {
     std::vector<std::string> values;
@@ -54,8 +45,7 @@ std::vector<std::string> choices_of(const std::string& name, const CLI::Option& 
     if (name == "label-map") return built_in_label_map_names();
     if (const std::string setting = setting_of_shorthand("--" + name); !setting.empty())
         if (const Field& known = field(setting); !known.choices.empty()) return known.choices;
-    if (std::vector<std::string> values = listed_values(option.get_type_name()); !values.empty())
-        return values;
+    if (std::vector<std::string> values = listed_values(option); !values.empty()) return values;
     return placeholder_values(option.get_option_text());
 }
 
