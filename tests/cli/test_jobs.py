@@ -79,6 +79,30 @@ def test_timing_names_the_stages(render, sphere):
     assert 0 < float(stages["draw"]) <= float(stages["total"])
 
 
+@pytest.mark.parametrize("options, message", [
+    (("-o", "a.png", "--save-settings", "a.png"), "-o and --save-settings would both write a.png"),
+    (("-o", "a.png", "--save-settings", "{folder}/./a.png"), "-o and --save-settings would both write"),
+    (("-o", "a.png", "--save-settings", "here/a.png"), "-o and --save-settings would both write here/a.png"),
+    (("-o", "a.exr", "--layers", "depth", "--save-settings", "a_depth.exr"), "--layers and --save-settings would both write"),
+    (("-o", "a.png", "--layers", "depth,depth"), "--layers and --layers would both write"),
+    (("-o", "{name}.exr", "--batch", "--layers", "depth"), "--layers and -o would both write"),
+    (("-o", "f_%d.png", "--turntable", "2", "--save-settings", "f_0.png"), "-o and --save-settings would both write"),
+    (("-o", "a.png", "--save-settings", "b.obj"), "--save-settings would write over b.obj, which FILE reads"),
+    (("-o", "wood.png", "--texture", "base_color=wood.png"), "-o would write over wood.png, which a setting reads"),
+    (("-o", "a.png", "--settings", "look.json", "--save-settings", "look.json"), "would write over look.json, which --settings reads"),
+])  # fmt: skip
+def test_no_file_is_written_twice_and_none_that_is_read(render, box, tmp_path, options, message):
+    for name in ("b.obj", "b_depth.obj"):
+        (tmp_path / name).write_bytes(box.read_bytes())
+    (tmp_path / "wood.png").touch()
+    (tmp_path / "look.json").write_text('{"easypbr": 1, "settings": {}}')
+    (tmp_path / "here").symlink_to(tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    options = [option.replace("{folder}", str(tmp_path)) for option in options]
+    assert message in one_error(render("b.obj", "b_depth.obj", *options, code=2))
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+
+
 @pytest.mark.parametrize("output", ["missing/out.png", "out.xyz", "."])
 def test_output_is_checked_before_anything_is_read(render, tmp_path, output):
     message = one_error(render("not-there.obj", "-o", output, code=1))

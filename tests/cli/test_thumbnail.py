@@ -51,6 +51,7 @@ def test_mistakes_are_named(easypbr, tmp_path, arguments, code, message):
 def test_a_damaged_file_leaves_no_picture(easypbr, tmp_path):
     (tmp_path / "half.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
     assert "half.ply" in easypbr("thumbnail", "half.ply", "-o", "x.png", code=1).stderr
+    assert "would write over half.ply" in easypbr("thumbnail", "half.ply", "-o", "half.ply", code=2).stderr
     assert not (tmp_path / "x.png").exists()
 
 

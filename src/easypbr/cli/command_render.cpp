@@ -23,6 +23,7 @@
 #include "easypbr/cli/terminal_image.h"
 #include "easypbr/cli/truth_layers.h"
 #include "easypbr/cli/user_config.h"
+#include "easypbr/cli/written_paths.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/drawing/line_drawing.h"
@@ -30,6 +31,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
+#include "easypbr/io/video/video.h"
 #include "easypbr/scene/setting_files.h"
 #include "easypbr/scene/settings.h"
 
@@ -88,6 +90,38 @@ app::RecordingOptions recording_of(const RenderOptions& options) {
     return recording;
 }
 
+std::vector<NamedPath> written_for(const std::vector<Picture>& pictures, const RenderOptions& options) {
+    std::vector<NamedPath> paths;
+    for (const Picture& picture : pictures) {
+        const bool is_file = !picture.output.empty() && picture.output != "-";
+        // Of numbered pictures the first.
+        const bool is_numbered =
+            options.records() && !io::is_video(picture.output) && app::is_recording_name(picture.output);
+        if (is_file)
+            paths.push_back(
+                {"-o", is_numbered ? app::frame_path(picture.output, 0) : fs::path(picture.output)});
+        for (const std::string& layer : options.layers)
+            paths.push_back({"--layers", truth_path(picture.output, layer)});
+        if (!picture.save_settings.empty()) paths.push_back({"--save-settings", picture.save_settings});
+    }
+    return paths;
+}
+
+std::vector<NamedPath> read_for(const RenderOptions& options, const Settings& settings) {
+    std::vector<NamedPath> paths = {{"--settings", options.start.settings},
+                                    {"--preset", options.start.preset},
+                                    {"--camera-pose", options.camera_pose},
+                                    {"--camera-path", options.camera_path},
+                                    {"--label-map", options.label_map}};
+    for (const std::string& file : options.files)
+        if (file != standard_input) paths.push_back({"FILE", file});
+    for (const std::string& pass : options.passes)
+        paths.push_back({"--pass", pass.substr(pass.find('=') + 1)});
+    for_each_file(settings, [&](const std::string& file) { paths.push_back({"a setting", file}); });
+    std::erase_if(paths, [](const NamedPath& named) { return named.path.empty(); });
+    return paths;
+}
+
 /// Throws FileError, ArgumentError before anything is loaded or drawn.
 void check_files(const Picture& picture, const Settings& settings, const RenderOptions& options) {
     if (options.records())
@@ -140,6 +174,7 @@ class RenderJob {
 
     int run() {
         const std::vector<Picture> pictures = pictures_of(options_);
+        check_paths("render", written_for(pictures, options_), read_for(options_, look_.settings));
         if (!options_.batch) {
             check_files(pictures.front(), look_.settings, options_);
             make(pictures.front());

@@ -7,6 +7,7 @@
 #include "easypbr/cli/console.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/user_config.h"
+#include "easypbr/cli/written_paths.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -41,6 +42,8 @@ int run_thumbnail(const ThumbnailOptions& options) {
         throw UsageError(
             fmt::format("thumbnail: --size: expected 1 to {}, got {}", largest_size, options.size));
     check_input("thumbnail", {options.file});
+    if (options.file != standard_input)
+        check_paths("thumbnail", {{"-o", options.output}}, {{"FILE", options.file}});
     be_quiet();
     check_writable(options.output);
     app::Session session;
