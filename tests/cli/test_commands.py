@@ -288,6 +288,23 @@ def test_devices_are_chosen_by_name(easypbr, environment, sphere):
         del environment["EASYPBR_DEVICE"]
 
 
+@pytest.mark.parametrize("name, value, message", [
+    ("EASYPBR_DEVICE", "gpu", "EASYPBR_DEVICE: there is no device 'gpu'; expected auto, gl or cpu"),
+    ("EASYPBR_THREADS", "abc", "EASYPBR_THREADS: expected a whole number of 1 or more, got 'abc'"),
+    ("EASYPBR_THREADS", "-1", "EASYPBR_THREADS: expected a whole number of 1 or more, got '-1'"),
+    ("EASYPBR_THREADS", "1.5", "EASYPBR_THREADS: expected a whole number of 1 or more, got '1.5'"),
+    ("EASYPBR_CACHE_LIMIT", "1GB", "EASYPBR_CACHE_LIMIT: expected a number of GB, 0 or more, got '1GB'"),
+])  # fmt: skip
+def test_wrong_variables_are_errors_and_empty_ones_are_none(easypbr, environment, sphere, tmp_path, monkeypatch, name, value, message):
+    draw = ("render", sphere, "-o", "out.png", "--size", "64x48", "--mode", "raster")
+    monkeypatch.setitem(environment, name, value)
+    (line,) = easypbr(*draw, code=1).stderr.splitlines()
+    assert line.startswith("easypbr: error: ") and message in line
+    assert list(tmp_path.iterdir()) == []
+    monkeypatch.setitem(environment, name, "")
+    easypbr(*draw)
+
+
 def test_view_says_when_there_is_no_display(easypbr, environment, tmp_path):
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         environment.pop(name, None)

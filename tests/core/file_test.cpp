@@ -281,11 +281,22 @@ TEST_F(Cache, StaysWithinItsLimit) {
     setenv("EASYPBR_CACHE_LIMIT", "0", 1);
     cache_store(key_of(5), {});
     EXPECT_FALSE(cache_load(key_of(5)));
-    for (const char* wrong : {"", "-1", "1GB", "nan"}) {
+    setenv("EASYPBR_CACHE_LIMIT", "", 1);
+    EXPECT_EQ(cache_limit(), 1'000'000'000u);
+    unsetenv("EASYPBR_CACHE_LIMIT");
+}
+
+TEST_F(Cache, RefusesALimitThatIsNoNumber) {
+    store_blobs(1);
+    for (const char* wrong : {"-1", "1GB", "nan", "abc"}) {
         setenv("EASYPBR_CACHE_LIMIT", wrong, 1);
-        EXPECT_EQ(cache_limit(), 1'000'000'000u) << wrong;
+        EXPECT_THROW(cache_limit(), ArgumentError) << wrong;
+        // Before the work whose result would be kept.
+        EXPECT_THROW(cache_load(key_of(0)), ArgumentError) << wrong;
+        EXPECT_NO_THROW(cache_store(key_of(1), {})) << wrong;
     }
     unsetenv("EASYPBR_CACHE_LIMIT");
+    EXPECT_TRUE(cache_load(key_of(0)));
 }
 
 // The folder may be one that holds other things.

@@ -20,6 +20,7 @@
 #include "easypbr/core/file_set.h"
 #include "easypbr/core/hash.h"
 #include "easypbr/core/open_file.h"
+#include "easypbr/core/variable.h"
 
 namespace easypbr {
 namespace {
@@ -187,15 +188,19 @@ std::string cache_problem() {
 }
 
 uint64_t cache_limit() {
-    const char* given = std::getenv("EASYPBR_CACHE_LIMIT");
-    const std::string_view text = given ? given : "";
     double gb = default_limit_gb;
-    const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), gb);
-    if (error != std::errc() || end != text.data() + text.size() || !(gb >= 0)) gb = default_limit_gb;
+    if (const std::optional<std::string> given = variable("EASYPBR_CACHE_LIMIT")) {
+        const char* end = given->data() + given->size();
+        const auto [stop, error] = fast_float::from_chars(given->data(), end, gb);
+        if (error != std::errc() || stop != end || !(gb >= 0))
+            throw ArgumentError(
+                fmt::format("EASYPBR_CACHE_LIMIT: expected a number of GB, 0 or more, got '{}'", *given));
+    }
     return uint64_t(std::min(gb, 1e9) * 1e9);
 }
 
 std::optional<std::vector<std::byte>> cache_load(std::string_view key) {
+    cache_limit();  // A wrong one is told before the work whose result is to be kept.
     try {
         const Descriptor folder = open_folder();
         const std::string name(key);

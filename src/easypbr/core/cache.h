@@ -21,11 +21,11 @@ std::filesystem::path cache_folder();
 std::string cache_problem();
 
 /// Bytes that the blobs may take: $EASYPBR_CACHE_LIMIT in GB (10^9 bytes), 0: nothing is kept. 1 GB where it
-/// is not set, or no number from 0 on.
+/// is not set. Throws ArgumentError where it is no number from 0 on.
 uint64_t cache_limit();
 
 /// The blob stored under `key`, or nothing when there is none, it is damaged, it was stored under another key
-/// or the cache cannot be read. It counts as used now.
+/// or the cache cannot be read. It counts as used now. Throws as cache_limit().
 std::optional<std::vector<std::byte>> cache_load(std::string_view key);
 
 /// Stores a blob, then drops those that were not used for the longest until all are within cache_limit(). A

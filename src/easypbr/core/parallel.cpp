@@ -1,5 +1,6 @@
 #include "easypbr/core/parallel.h"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -7,11 +8,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
 
+#include "easypbr/core/error.h"
 #include "easypbr/core/folder.h"
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/variable.h"
 
 #ifdef EASYPBR_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -60,14 +66,26 @@ struct InLoop {
     InLoop& operator=(const InLoop&) = delete;
 };
 
-/// EASYPBR_THREADS keeps the loops to as many threads.
+/// What EASYPBR_THREADS says.
+std::optional<size_t> most_threads() {
+    const std::optional<std::string> given = variable("EASYPBR_THREADS");
+    if (!given) return std::nullopt;
+    int count = 0;
+    const char* end = given->data() + given->size();
+    const auto [stop, error] = std::from_chars(given->data(), end, count);
+    if (error != std::errc() || stop != end || count < 1)
+        throw ArgumentError(
+            fmt::format("EASYPBR_THREADS: expected a whole number of 1 or more, got '{}'", *given));
+    return size_t(count);
+}
+
+/// EASYPBR_THREADS keeps the loops to as many threads. Throws ArgumentError, each time, for a wrong one.
 void limit_threads() {
     static const std::unique_ptr<tbb::global_control> limit = [] {
-        const char* given = std::getenv("EASYPBR_THREADS");
-        const int count = given ? std::atoi(given) : 0;
-        return count < 1 ? nullptr
-                         : std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                                 size_t(count));
+        const std::optional<size_t> most = most_threads();
+        return most ? std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                            *most)
+                    : nullptr;
     }();
 }
 

@@ -9,8 +9,8 @@
 namespace easypbr {
 
 /// Calls body(begin, end) for consecutive chunks of [0, count), each of `grain` items but the last, on all
-/// cores. The chunks depend on count and grain alone. Exceptions are passed on to the caller. Throws
-/// Interrupted.
+/// cores, of EASYPBR_THREADS at most. The chunks depend on count and grain alone. Exceptions are passed on to
+/// the caller. Throws Interrupted, and, as all below, ArgumentError for an EASYPBR_THREADS that is no number.
 void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t begin, size_t end)>& body);
 
 /// Calls body(index) for every index in [0, count), on all cores, `grain` at a time.

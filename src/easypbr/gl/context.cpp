@@ -16,6 +16,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/core/variable.h"
 #include "easypbr/gl/draw.h"
 #include "easypbr/gl/object.h"
 
@@ -68,14 +70,14 @@ void require_libraries() {
 
 /// The number of the one EGL device that the environment asks for.
 std::optional<int> device_by_number() {
-    const char* text = std::getenv("EASYPBR_EGL_DEVICE");
-    if (!text || !*text) return std::nullopt;
+    const std::optional<std::string> text = variable("EASYPBR_EGL_DEVICE");
+    if (!text) return std::nullopt;
     int number = 0;
-    const char* end = text + std::strlen(text);
-    const auto [stop, error] = std::from_chars(text, end, number);
+    const char* end = text->data() + text->size();
+    const auto [stop, error] = std::from_chars(text->data(), end, number);
     if (error != std::errc() || stop != end || number < 0)
         throw ContextError(fmt::format(
-            "EASYPBR_EGL_DEVICE: expected the number of an EGL device, from 0 on, got '{}'", text));
+            "EASYPBR_EGL_DEVICE: expected the number of an EGL device, from 0 on, got '{}'", *text));
     return number;
 }
 
@@ -215,8 +217,12 @@ bool has_gpu_files() {
 }
 
 DrawDevice device_by_environment() {
-    const char* name = std::getenv("EASYPBR_DEVICE");
-    return name ? draw_device_named(name) : DrawDevice::automatic;
+    const std::optional<std::string> name = variable("EASYPBR_DEVICE");
+    try {
+        return name ? draw_device_named(*name) : DrawDevice::automatic;
+    } catch (const NameError& error) {
+        throw ContextError(fmt::format("EASYPBR_DEVICE: {}", error.what()));
+    }
 }
 
 }  // namespace
@@ -227,6 +233,7 @@ std::unique_ptr<Context> Context::create(DrawDevice device) {
     if (first_process != getpid())
         throw ContextError(
             "this process was forked from one that had already drawn: start workers with 'spawn' instead");
+    thread_count();  // A wrong EASYPBR_THREADS is told before anything is drawn.
     if (device == DrawDevice::automatic) device = device_by_environment();
     if (device == DrawDevice::automatic && device_by_number()) device = DrawDevice::gl;
     const bool asked = device != DrawDevice::automatic;
