@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "easypbr/core/control_group.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/system_numbers.h"
 
 namespace easypbr {
 namespace {
@@ -18,40 +20,10 @@ thread_local MemoryScope* innermost = nullptr;
 
 constexpr uint64_t unlimited = std::numeric_limits<uint64_t>::max();
 
-/// The number that follows a word in a text file; `unlimited` where there is none.
-uint64_t number_after(const char* path, const std::string& word) {
-    std::ifstream file(path);
-    std::string found;
-    while (file >> found) {
-        uint64_t number = 0;
-        if (found == word && file >> number) return number;
-    }
-    return unlimited;
-}
-
-/// The only number of a file; `unlimited` where it says "max" or is not there.
-uint64_t number_in(const char* path) {
-    std::ifstream file(path);
-    uint64_t number = 0;
-    return file >> number ? number : unlimited;
-}
-
-/// What the control group of the process may still take (cgroup v2, "memory.max").
-uint64_t left_in_group() {
-    const uint64_t most = number_in("/sys/fs/cgroup/memory.max");
-    const uint64_t used = number_in("/sys/fs/cgroup/memory.current");
-    if (most == unlimited || used == unlimited) return unlimited;
-    // Cached files are given up for memory that is asked for.
-    const uint64_t cached = number_after("/sys/fs/cgroup/memory.stat", "file");
-    const uint64_t taken = cached < used ? used - cached : used;
-    return most > taken ? most - taken : 0;
-}
-
 uint64_t left_of_addresses() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
-    const uint64_t used_pages = number_in("/proc/self/statm");
-    const uint64_t used = used_pages == unlimited ? 0 : used_pages * 4096;
+    const uint64_t used = number_in("/proc/self/statm").value_or(0) * uint64_t(::sysconf(_SC_PAGESIZE));
     return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
@@ -65,9 +37,9 @@ std::string size_text(uint64_t bytes) {
 }  // namespace
 
 uint64_t automatic_memory_limit() {
-    const uint64_t free_kb = number_after("/proc/meminfo", "MemAvailable:");
-    const uint64_t free = free_kb == unlimited ? unlimited : free_kb * 1024;
-    return std::min({free, left_in_group(), left_of_addresses()}) / 4 * 3;
+    const auto free_kb = number_after("/proc/meminfo", "MemAvailable:");
+    const uint64_t free = free_kb ? *free_kb * 1024 : unlimited;
+    return std::min({free, memory_left_in_groups(), left_of_addresses()}) / 4 * 3;
 }
 
 MemoryScope::MemoryScope(std::string name, uint64_t limit)

@@ -9,7 +9,7 @@
 namespace easypbr {
 
 /// Bytes that a reading may take when nobody says: three quarters of what is available on the machine, in the
-/// process's control group and under its limit of address space.
+/// process's control groups and under its limit of address space.
 uint64_t automatic_memory_limit();
 
 /// What this thread reads while the object lives takes no more than a limit, all together. A scope without a

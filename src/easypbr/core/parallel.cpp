@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
@@ -14,6 +15,7 @@
 #include <string>
 #include <system_error>
 
+#include "easypbr/core/control_group.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/folder.h"
 #include "easypbr/core/interrupt.h"
@@ -67,7 +69,7 @@ struct InLoop {
 };
 
 /// What EASYPBR_THREADS says.
-std::optional<size_t> most_threads() {
+std::optional<size_t> wanted_threads() {
     const std::optional<std::string> given = variable("EASYPBR_THREADS");
     if (!given) return std::nullopt;
     int count = 0;
@@ -79,13 +81,15 @@ std::optional<size_t> most_threads() {
     return size_t(count);
 }
 
-/// EASYPBR_THREADS keeps the loops to as many threads. Throws ArgumentError, each time, for a wrong one.
+/// EASYPBR_THREADS keeps the loops to as many threads; else the quota of control groups does, beyond which
+/// threads would wait for each other's turns. Throws ArgumentError, each time, for a wrong one.
 void limit_threads() {
-    static const std::unique_ptr<tbb::global_control> limit = [] {
-        const std::optional<size_t> most = most_threads();
-        return most ? std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                            *most)
-                    : nullptr;
+    using Limit = tbb::global_control;
+    static const std::unique_ptr<Limit> limit = []() -> std::unique_ptr<Limit> {
+        const std::optional<size_t> wanted = wanted_threads();
+        const int granted = threads_in_groups();
+        if (!wanted && granted >= tbb::info::default_concurrency()) return nullptr;
+        return std::make_unique<Limit>(Limit::max_allowed_parallelism, wanted.value_or(size_t(granted)));
     }();
 }
 

@@ -30,7 +30,8 @@ struct KeyedIndex {
 /// Sorts by key, equal keys by index, on all cores.
 void parallel_sort(std::vector<KeyedIndex>& items);
 
-/// Number of threads used by the loops.
+/// Number of threads used by the loops: EASYPBR_THREADS, else the cores that the process may use, or as many
+/// as its control groups give time for (core/control_group.h).
 int thread_count();
 
 }  // namespace easypbr
