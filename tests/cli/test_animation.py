@@ -144,6 +144,26 @@ def test_an_animation_alone_is_recorded(render, moving_camera, tmp_path):
     assert (png.read(tmp_path / "r_0.png") != png.read(tmp_path / "r_4.png")).any()
 
 
+def test_the_automatic_camera_shows_all_of_a_recording(render, moving, tmp_path):
+    """A triangle that goes five of its widths to the right: it is in all pictures whole, at no picture's border."""
+    file = json.loads(moving.read_text())
+    head = "data:application/octet-stream;base64,"
+    data = bytearray(base64.b64decode(file["buffers"][0]["uri"][len(head):]))
+    data[44:68] = np.array([0, 0, 0, 10, 0, 0], "<f4").tobytes()
+    file["buffers"][0]["uri"] = head + base64.b64encode(data).decode()
+    moving.write_text(json.dumps(file))
+    render(moving, "--animation", "go", "--fps", "10", "-o", "f_%d.png", "--exposure", "1", "--preset", "dark")
+    areas = []
+    for i in range(5):
+        picture = png.read(tmp_path / f"f_{i}.png")[..., :3].astype(int)
+        seen = np.abs(picture - 64).max(2) > 8
+        assert not (seen[0].any() or seen[-1].any() or seen[:, 0].any() or seen[:, -1].any()), i
+        areas.append(seen.sum())
+    assert min(areas) > 0
+    # It is seen from 30 degrees to the side: it comes nearer by half of its way, from about three times that to twice.
+    assert max(areas) < 6 * min(areas)
+
+
 def test_what_is_not_there(render, moving, box):
     assert "there is no animation 'og'" in render(moving, "--animation", "og", "-o", "a.png", code=1).stderr
     assert "the files hold no animations" in render(box, "--animation", "go", "-o", "a.png", code=1).stderr

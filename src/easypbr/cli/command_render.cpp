@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <future>
+#include <iterator>
 
 #include "easypbr/app/output.h"
 #include "easypbr/app/recorder.h"
@@ -32,6 +33,7 @@
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/io/video/video.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/setting_files.h"
 #include "easypbr/scene/settings.h"
 
@@ -249,17 +251,31 @@ class RenderJob {
         recorder.record_path(path, picture.output, recording, options_.turntable, play);
     }
 
-    /// Once from --animation-time around, with the camera of the file that it moves, or one at rest.
+    /// Once from --animation-time around, with the camera of the file that it moves, or one at rest that
+    /// shows all of it.
     void record_animation(const Picture& picture, app::Recorder& recorder,
                           const app::RecordingOptions& recording) {
         std::vector<double> times(
             size_t(std::max(1.0, std::round(animation_->duration_s() * recording.fps))));
         for (size_t i = 0; i < times.size(); ++i) times[i] = double(i) / recording.fps;
-        const Camera rest = session_.resolve().camera;
+        const Camera rest = resting_camera(times.back());
         const auto camera = [&](double time_s) { return animation_->camera(time_of(time_s)).value_or(rest); };
         animate_frame_before();
         recorder.record_frames(times, -frame_s(), camera, picture.output, recording,
                                [&](int, int, double time_s) { animate_next(time_s); });
+    }
+
+    /// The camera of what is to be seen from now until `end_s` seconds later, as the settings say.
+    Camera resting_camera(double end_s) {
+        constexpr int moments = 16;
+        SceneSnapshot all;
+        for (int i = moments - 1; i >= 0; --i) {
+            animate(end_s * i / (moments - 1));
+            SceneSnapshot scene = session_.scene().snapshot();
+            std::ranges::move(all.objects, std::back_inserter(scene.objects));
+            all = std::move(scene);
+        }
+        return resolve(all, session_.settings(), session_.settings().image.size).camera;
     }
 
     double time_of(double time_s) const { return options_.animation_time.value_or(0) + time_s; }
