@@ -153,7 +153,13 @@ class Viewer(Sharing):
     def fixed_step(self, seconds: float | None) -> None:
         self._handle.fixed_step = seconds
 
-    def play(self, animations: "_easypbr.Animations | None" = None, animation: str | int = 0, speed: float | None = None, loop: bool | None = None) -> None:
+    def play(
+        self,
+        animations: "_easypbr.Animations | None" = None,
+        animation: str | int = 0,
+        speed: float | None = None,
+        loop: bool | None = None,
+    ) -> None:
         """Plays an animation of a file, by its name or number, from its start: view.play(load_scene(path).animations). It
         follows view.time: that of the window, or of the frames that are recorded. Without arguments it goes on after
         pause(), or from its start when it is at its end. `speed`: below 0 backwards, without a loop from its end. None: 1 and

@@ -61,7 +61,7 @@ std::unique_ptr<VideoWriter> open_at(const fs::path& path, const VideoOptions& o
 }
 
 /// "clip.part.mp4" beside "clip.mp4": by its extension a video can be played.
-fs::path part_of(const fs::path& target) {
+fs::path beside_of(const fs::path& target) {
     fs::path part = target;
     part.replace_extension(".part" + target.extension().string());
     return part;
@@ -71,7 +71,7 @@ fs::path part_of(const fs::path& target) {
 class ReplacingVideo final : public VideoWriter {
   public:
     ReplacingVideo(const fs::path& target, const VideoOptions& options)
-        : target_(target), part_(part_of(target)), video_(open_at(part_, options)) {}
+        : target_(target), part_(beside_of(target)), video_(open_at(part_, options)) {}
 
     ~ReplacingVideo() override {
         try {
