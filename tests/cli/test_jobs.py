@@ -1,9 +1,11 @@
 """`easypbr render` as a job: files in and out, batches, settings files, failures."""
 import re
+import subprocess
 
 import pytest
 
 import png
+from binary import BINARY
 
 
 def one_error(done):
@@ -170,3 +172,11 @@ def test_wrong_values_are_wrong_commands(render, sphere, tmp_path, options):
 def test_files_and_output_are_required(easypbr, sphere):
     assert "FILE" in one_error(easypbr("render", "-o", "out.png", code=2))
     assert "-o" in one_error(easypbr("render", sphere, code=2))
+
+
+def test_small_stacks_are_enough(environment, sphere, tmp_path):
+    """A limit of 400 KiB, which is each thread's stack as well. What the library keeps for each thread is taken from there."""
+    small = ["bash", "-c", 'ulimit -s 400; exec "$0" "$@"', BINARY, "render", sphere, "-o", "out.png", "--size", "64x48", "--samples", "1"]
+    done = subprocess.run(small, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert png.read(tmp_path / "out.png").shape == (48, 64, 4)

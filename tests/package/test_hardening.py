@@ -38,6 +38,14 @@ def test_memory_that_is_written_once_is_read_only(name):
     assert re.search(r"\(FLAGS\).*BIND_NOW|\(FLAGS_1\).*\bNOW\b", readelf("-d", path))
 
 
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_variables_of_threads_leave_room_on_small_stacks(name):
+    """glibc takes them from the stack of every thread, also of those that the library does not start. 2 KiB are a few pointers of each
+    room, and a fiftieth of a stack of 100 KiB."""
+    sizes = re.findall(r"^ +TLS +0x\w+ 0x\w+ 0x\w+ 0x\w+ 0x(\w+)", readelf("-l", built(name)), re.MULTILINE)
+    assert all(int(size, 16) <= 2048 for size in sizes), sizes
+
+
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_are_placed_at_random(name):
     path = built(name)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "easypbr/scene/resolve.h"
 
@@ -32,7 +33,9 @@ void SplatCompositor::begin(const Frame& frame, const std::vector<const DrawItem
 
 void SplatCompositor::blend(const Limits& limits, const Take& take, bool sums_positions) {
     set_.for_each_tile([&](int column, int row, std::span<const uint32_t> places) {
-        thread_local SplatTile tile;
+        // What is of a thread itself takes room on the stack of every thread.
+        thread_local const auto own = std::make_unique<SplatTile>();
+        SplatTile& tile = *own;
         tile.left = column * SplatTile::size;
         tile.top = row * SplatTile::size;
         tile.clear();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <span>
 
 #include "easypbr/core/parallel.h"
@@ -12,9 +13,10 @@ namespace {
 
 constexpr size_t binning_grain = 1 << 13;
 
+/// What is of a thread itself takes room on the stack of every thread.
 SurfelTile& tile_of_thread() {
-    thread_local SurfelTile tile;
-    return tile;
+    thread_local const auto tile = std::make_unique<SurfelTile>();
+    return *tile;
 }
 
 /// Those of one source, in entries that are sorted.
