@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/uio.h>
 #include <time.h>
@@ -38,7 +39,8 @@ bool strikes(Kind kind) {
     if (current.load(std::memory_order_relaxed) != kind) return false;
     const long number = ++count;
     const long n = wanted;
-    if (n == 0 || (kind == Kind::write ? number < n : number != n)) return false;
+    const bool goes_on = kind == Kind::write || kind == Kind::thread;
+    if (n == 0 || (goes_on ? number < n : number != n)) return false;
     has_happened = true;
     return true;
 }
@@ -203,6 +205,13 @@ int rename(const char* from, const char* to) {
     static auto* const next = real<int(const char*, const char*)>("rename");
     if (strikes(Kind::rename)) return fail_with(EACCES), -1;
     return next(from, to);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*body)(void*),
+                   void* argument) noexcept {
+    static auto* const next =
+        real<int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*)>("pthread_create");
+    return strikes(Kind::thread) ? EAGAIN : next(thread, attributes, body, argument);
 }
 
 int clock_gettime(clockid_t clock, timespec* out) {

@@ -15,6 +15,7 @@ enum class Kind {
     open,              ///< the n-th file cannot be opened: EACCES
     read,              ///< the n-th read fails: EIO
     write,             ///< the n-th write fails, and all after it: ENOSPC; the n-th takes half of its bytes
+    thread,            ///< the n-th thread cannot be started, and none after it: EAGAIN
     rename,            ///< the n-th file cannot be moved to its place: EACCES
     clock              ///< the time of day jumps by years between any two looks at it
 };

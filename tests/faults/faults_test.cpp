@@ -5,15 +5,18 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <new>
 #include <set>
 
+#include "easypbr/app/frame_queue.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/io/video/video.h"
 #include "faults/jobs.h"
 #include "io/temporary_folder.h"
 
@@ -203,6 +206,45 @@ TEST_F(Faults, AFullDisk) {
 TEST_F(Faults, AFolderThatTakesNoFiles) {
     strike(writing_jobs(), Kind::rename);
     for (const Job& job : writing_jobs()) Trial(job).keep(Kind::rename, 1);
+}
+
+/// Counts the pictures that it gets, on up to four threads.
+class CountingWriter : public app::FrameWriter {
+  public:
+    explicit CountingWriter(std::atomic<int>& count) : count_(count) {}
+    void write(int, const Image&) override { ++count_; }
+    int threads() const override { return 4; }
+
+  private:
+    std::atomic<int>& count_;
+};
+
+TEST_F(Faults, NoThreads) {
+    std::atomic<int> count = 0;
+    try {
+        const Fault fault(Kind::thread, 1);
+        app::FrameQueue queue(std::make_unique<CountingWriter>(count));
+        ADD_FAILURE() << "there is no thread";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("cannot start a thread"), std::string::npos) << error.what();
+    }
+    // The second one fails: the first does all.
+    const Fault fault(Kind::thread, 2);
+    app::FrameQueue queue(std::make_unique<CountingWriter>(count));
+    EXPECT_TRUE(Fault::happened());
+    for (int i = 0; i < 10; ++i) queue.push(Image(2, 2, 4, PixelType::u8));
+    queue.finish();
+    EXPECT_EQ(count, 10);
+}
+
+TEST_F(Faults, AnEncoderWithoutThreads) {
+    if (io::video_support() != "written by FFmpeg's libraries") GTEST_SKIP() << io::video_support();
+    const TemporaryFolder folder;
+    const Fault fault(Kind::thread, 1);
+    const auto video = io::open_video(folder / "a.mp4", {.size = {64, 48}, .fps = 25, .codec = {}});
+    for (int i = 0; i < 3; ++i) video->add(Image(64, 48, 4, PixelType::u8));
+    video->finish();
+    EXPECT_GT(fs::file_size(folder / "a.mp4"), 0u);
 }
 
 TEST_F(Faults, AClockThatJumps) {

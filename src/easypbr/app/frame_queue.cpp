@@ -1,12 +1,13 @@
 #include "easypbr/app/frame_queue.h"
 
 #include "easypbr/core/log.h"
+#include "easypbr/core/start_thread.h"
 
 namespace easypbr::app {
 
 FrameQueue::FrameQueue(std::unique_ptr<FrameWriter> writer)
     : writer_(std::move(writer)), capacity_(2 + size_t(writer_->threads())) {
-    for (int i = 0; i < writer_->threads(); ++i) threads_.emplace_back([this] { work(); });
+    threads_ = start_threads(size_t(writer_->threads()), [this] { work(); });
 }
 
 FrameQueue::~FrameQueue() {

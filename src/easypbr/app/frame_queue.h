@@ -27,6 +27,7 @@ class FrameWriter {
 /// Hands pictures to a writer beside the caller's work.
 class FrameQueue {
   public:
+    /// On as many threads as the writer wants and the system gives. Throws Error where that gives none.
     explicit FrameQueue(std::unique_ptr<FrameWriter> writer);
     /// Waits for what was pushed and finishes the writer; a failure is logged.
     ~FrameQueue();

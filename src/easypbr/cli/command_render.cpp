@@ -310,9 +310,11 @@ class RenderJob {
 
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, StageTimes& times) {
-        auto loading = std::async(std::launch::async, load_all, picture.files,
-                                  app::load_options(look_.settings, options_.format));
-        auto lighting = std::async(std::launch::async, [this] { load_environment(); });
+        // Deferred where the system gives no thread: then they are read when they are asked for.
+        constexpr auto beside = std::launch::async | std::launch::deferred;
+        auto loading =
+            std::async(beside, load_all, picture.files, app::load_options(look_.settings, options_.format));
+        auto lighting = std::async(beside, [this] { load_environment(); });
         session_.context_info();
         times.lap("context");
         const std::vector<io::LoadedScene> loaded = loading.get();

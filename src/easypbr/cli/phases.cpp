@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "easypbr/core/log.h"
@@ -11,7 +12,12 @@ namespace easypbr::cli {
 
 using namespace std::chrono_literals;
 
-Phases::Phases(int count) : count_(std::max(count, 1)), thread_([this] { watch(); }) {}
+Phases::Phases(int count) : count_(std::max(count, 1)) {
+    try {
+        thread_ = std::thread([this] { watch(); });
+    } catch (const std::system_error&) {  // The work goes on without its progress.
+    }
+}
 
 Phases::~Phases() {
     {
@@ -19,7 +25,7 @@ Phases::~Phases() {
         is_over_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 void Phases::begin(std::string what) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "easypbr/core/log.h"
+#include "easypbr/core/start_thread.h"
 #include "easypbr/core/stopwatch.h"
 #include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/image/image_io.h"
@@ -36,7 +37,8 @@ void describe(FrameHeader& header, const Image& image, const std::vector<std::by
     header.encode_us = uint32_t(seconds * 1e6);
 }
 
-Encoder::Encoder(Work work) : work_(std::move(work)), thread_([this] { run(); }) {}
+Encoder::Encoder(Work work)
+    : work_(std::move(work)), thread_(started([this] { return std::thread([this] { run(); }); })) {}
 
 Encoder::~Encoder() {
     {

@@ -20,6 +20,7 @@
 #include <thread>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/start_thread.h"
 #include "easypbr/remote/connection.h"
 #include "easypbr/remote/inbox.h"
 
@@ -69,7 +70,7 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
     void start(WireEvents& events) {
         events_ = &events;
         accept_next();
-        thread_ = std::thread([this] { context_.run(); });
+        thread_ = started([this] { return std::thread([this] { context_.run(); }); });
         // Its share of the machine is told apart from the drawing's.
         ::pthread_setname_np(thread_.native_handle(), "easypbr network");
     }

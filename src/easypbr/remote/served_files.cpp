@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/start_thread.h"
 #include "easypbr/remote/inbox.h"
 
 namespace easypbr::remote {
@@ -67,14 +68,16 @@ void ServedFiles::leave() {
 
 void ServedFiles::open(const std::string& name, const io::LoadOptions& options) {
     stop();
-    job_ = std::make_unique<Job>();
-    job_->path = folder_.path() / place_ / name;
-    job_->result = std::async(std::launch::async, [this, job = job_.get(), options]() -> Opened {
+    auto job = std::make_unique<Job>();
+    job->path = folder_.path() / place_ / name;
+    const auto read = [this, job = job.get(), options]() -> Opened {
         const InterruptScope interrupt([job] { return job->stopped.load(); });
         const FolderScope beneath(&folder_);
         if (is_environment(extension_of(job->path))) return {job->path, Environment(job->path)};
         return {job->path, io::load_scene(job->path, options)};
-    });
+    };
+    job->result = started([&] { return std::async(std::launch::async, read); });
+    job_ = std::move(job);
 }
 
 std::string ServedFiles::reading() const {

@@ -8,6 +8,7 @@
 #include "easypbr/app/history.h"
 #include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/start_thread.h"
 #include "easypbr/remote/served_files.h"
 #include "easypbr/scene/animation.h"
 #include "easypbr/scene/settings.h"
@@ -26,7 +27,7 @@ Views::~Views() {
 }
 
 void Views::start() {
-    thread_ = std::thread([this] { run(); });
+    thread_ = started([this] { return std::thread([this] { run(); }); });
     ::pthread_setname_np(thread_.native_handle(), "easypbr view");
 }
 

@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/start_thread.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::io {
@@ -18,7 +19,7 @@ MeshQueue::MeshQueue(std::vector<std::filesystem::path> paths, int workers, int 
             fmt::format("mesh loader: expected at least 1 worker and 1 mesh read ahead, got {} and {}",
                         workers, prefetch));
     const size_t count = std::min({size_t(workers), prefetch_, paths_.size()});
-    for (size_t i = 0; i < count; ++i) threads_.emplace_back([this] { work(); });
+    threads_ = start_threads(count, [this] { work(); });
 }
 
 MeshQueue::~MeshQueue() {

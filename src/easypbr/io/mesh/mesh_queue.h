@@ -19,7 +19,8 @@ namespace easypbr::io {
 /// `prefetch` meshes are held or being read beyond the one that next() gave last, whatever their number.
 class MeshQueue {
   public:
-    /// Throws ArgumentError unless workers and prefetch are at least 1.
+    /// Throws ArgumentError unless workers and prefetch are at least 1, Error where the system gives no
+    /// thread; where it gives some, these read.
     MeshQueue(std::vector<std::filesystem::path> paths, int workers, int prefetch);
     /// Gives up the files that are being read.
     ~MeshQueue();

@@ -79,9 +79,7 @@ class FfmpegVideo final : public VideoWriter {
         require_written(avformat_alloc_output_context2(&raw, nullptr, container_of(path).name, path.c_str()),
                         path);
         output_.reset(raw);
-        codec_.reset(avcodec_alloc_context3(&encoder));
-        describe(encoder, options.fps);
-        open_encoder(encoder);
+        open_encoder(encoder, options.fps);
         make_frame();
         whole_or_none([&] { begin_file(); });
     }
@@ -156,10 +154,13 @@ class FfmpegVideo final : public VideoWriter {
         codec.gop_size = std::max(1, int(std::lround(fps)));
         codec.max_b_frames = 0;  // Nothing of what was written waits for a frame to come.
         if (output_->oformat->flags & AVFMT_GLOBALHEADER) codec.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-        codec.thread_count = 0;
     }
 
-    void open_encoder(const AVCodec& encoder) {
+    /// The error code. 0 threads: as many as the encoder likes.
+    int try_encoder(const AVCodec& encoder, double fps, int threads) {
+        codec_.reset(avcodec_alloc_context3(&encoder));
+        describe(encoder, fps);
+        codec_->thread_count = threads;
         AVDictionary* options = nullptr;
         const std::string name = encoder.name;
         const auto wanted = encoder_options(name);
@@ -170,11 +171,19 @@ class FfmpegVideo final : public VideoWriter {
         }
         const int opened = avcodec_open2(codec_.get(), &encoder, &options);
         av_dict_free(&options);
+        return opened;
+    }
+
+    /// Encoders do not say that the system gave them no threads: they may do with the caller's.
+    void open_encoder(const AVCodec& encoder, double fps) {
+        int opened = try_encoder(encoder, fps, 0);
+        if (opened < 0) opened = try_encoder(encoder, fps, 1);
+        if (opened == AVERROR(EAGAIN) || opened == AVERROR(ENOMEM)) require_written(opened, path_);
         if (opened < 0)
             throw ArgumentError(
                 fmt::format("cannot write {}: the encoder {} does not take pictures of {}x{} at this "
                             "rate",
-                            path_.string(), name, codec_->width, codec_->height));
+                            path_.string(), encoder.name, codec_->width, codec_->height));
     }
 
     void make_frame() {

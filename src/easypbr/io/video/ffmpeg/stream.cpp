@@ -52,18 +52,13 @@ Options options_of(const std::string& encoder, const VideoStreamOptions& options
 
 class FfmpegStream final : public VideoStream {
   public:
-    FfmpegStream(const AVCodec& encoder, const VideoStreamOptions& options)
-        : options_(options), codec_(avcodec_alloc_context3(&encoder)) {
-        describe_pictures(*codec_, AV_PIX_FMT_YUV420P, options.size);
-        codec_->framerate = av_d2q(options.fps, 100000);
-        codec_->time_base = av_inv_q(codec_->framerate);
-        codec_->gop_size = 1 << 30;
-        codec_->max_b_frames = 0;
-        codec_->thread_count = std::clamp(int(std::thread::hardware_concurrency()), 1, most_threads);
-        use_rate(options.rate);
-        // NVENC aims at it; x264 would no longer hold the quality constant.
-        if (this->encoder() != "libx264") codec_->bit_rate = codec_->rc_max_rate;
-        open(encoder);
+    FfmpegStream(const AVCodec& encoder, const VideoStreamOptions& options) : options_(options) {
+        // One is the caller's, where the system gives no others.
+        const bool has_threads = (encoder.capabilities & AV_CODEC_CAP_OTHER_THREADS) != 0;
+        if (!opens(encoder, std::clamp(int(std::thread::hardware_concurrency()), 1, most_threads)) &&
+            !(has_threads && opens(encoder, 1)))
+            throw FormatError(fmt::format("no video can be streamed: the encoder {} does not open for {}x{}",
+                                          encoder.name, codec_->width, codec_->height));
         frame_ = frame_for(*codec_);
         packet_.reset(av_packet_alloc());
         require(frame_ && packet_ ? 0 : AVERROR(ENOMEM));
@@ -114,15 +109,27 @@ class FfmpegStream final : public VideoStream {
         codec_->rc_initial_buffer_occupancy = codec_->rc_buffer_size;
     }
 
-    void open(const AVCodec& encoder) {
+    void describe() {
+        describe_pictures(*codec_, AV_PIX_FMT_YUV420P, options_.size);
+        codec_->framerate = av_d2q(options_.fps, 100000);
+        codec_->time_base = av_inv_q(codec_->framerate);
+        codec_->gop_size = 1 << 30;
+        codec_->max_b_frames = 0;
+        use_rate(options_.rate);
+        // NVENC aims at it; x264 would no longer hold the quality constant.
+        if (encoder() != "libx264") codec_->bit_rate = codec_->rc_max_rate;
+    }
+
+    bool opens(const AVCodec& encoder, int threads) {
+        codec_.reset(avcodec_alloc_context3(&encoder));
+        describe();
+        codec_->thread_count = threads;
         AVDictionary* wanted = nullptr;
         for (const auto& [name, value] : options_of(encoder.name, options_))
             av_dict_set(&wanted, name, value.c_str(), 0);
         const int opened = avcodec_open2(codec_.get(), &encoder, &wanted);
         av_dict_free(&wanted);
-        if (opened < 0)
-            throw FormatError(fmt::format("no video can be streamed: the encoder {} does not open for {}x{}",
-                                          encoder.name, codec_->width, codec_->height));
+        return opened >= 0;
     }
 
     VideoStreamOptions options_;
