@@ -76,6 +76,11 @@ def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
 @pytest.mark.parametrize("steps, code, message", [
     (["--decimate", "-1"], 1, "decimate: faces: expected a number >= 0, got -1"),
     (["--decimate", "many"], 2, "many"),
+    (["--cut-box", "1,1,1,0,0,0"], 1, "error: --cut-box: expected a box whose lowest corner is below its highest"),
+    (["--crease", "-1"], 2, "--crease: setting 'load.crease_deg': expected 0 to 180 degrees"),
+    (["--crease", "nan"], 2, "--crease: setting 'load.crease_deg': expected 0 to 180 degrees"),
+    (["--crease", "1e30"], 2, "--crease: setting 'load.crease_deg': expected 0 to 180 degrees"),
+    (["--memory", "-1"], 2, "--memory: setting 'limits.memory': expected 0 to 1000000 GB, got -1"),
     (["--voxelize", "nan"], 1, "cell size"),
     (["--estimate-surfels", "2"], 1, "k: expected a whole number from 3 to 256, got 2"),
     (["--decimat", "5"], 2, "did you mean '--decimate'"),

@@ -162,7 +162,7 @@ def test_misspelt_names_get_a_hint(render, sphere, tmp_path, option, hint):
 
 @pytest.mark.parametrize("options", [
     ("--roughness", "7"), ("--metallic", "shiny"), ("--color", "#12345"), ("--set", "nonsense"), ("--samples", "0"),
-    ("--bit-depth", "12"), ("--flat", "--smooth"), ("--camera-axes", "blender"), ("--size",), ("--background", "loud"),
+    ("--bit-depth", "12"), ("--flat", "--smooth"), ("--camera-axes", "blender"), ("--camera-axes", "opencv"), ("--size",), ("--background", "loud"),
     ("--camera-pose", "p.txt", "--camera-position", "1,2,3")])
 def test_wrong_values_are_wrong_commands(render, sphere, tmp_path, options):
     one_error(render(sphere, "-o", "out.png", *options, code=2))

@@ -59,6 +59,12 @@ def test_convert_writes_the_variant(easypbr, shoe):
     assert json.loads(easypbr("info", "--json", "red.glb").stdout)["materials"][0]["name"] == "red"
 
 
+@pytest.mark.parametrize("command", [("render", "-o", "a.png", "--size", "32x24"), ("convert", "out.ply")])
+def test_a_variant_of_a_file_without_any_is_a_warning(easypbr, box, command):
+    done = easypbr(command[0], box, *command[1:], "--variant", "red")
+    assert done.stderr == f"easypbr: warning: {box} has no material variants: 'red' changes nothing\n"
+
+
 def test_an_unknown_variant_is_an_error(easypbr, shoe, tmp_path):
     error = easypbr("render", shoe, "-o", "a.png", "--variant", "Street red", code=1).stderr
     assert "has no material variant 'Street red' (did you mean 'street red'?): it has street red, blue" in error

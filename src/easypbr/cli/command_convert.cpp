@@ -1,17 +1,19 @@
+#include "easypbr/app/scene_files.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/mesh_steps.h"
+#include "easypbr/cli/render_options.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
 namespace {
 
 struct ConvertOptions {
-    std::string in, out, format, variant;
-    double crease_deg = io::LoadOptions{}.crease_angle_deg, memory_gb = 0;
+    std::string in, out, format, crease, variant, memory;
     std::vector<MeshStep> steps;
 };
 
@@ -20,27 +22,41 @@ void declare_convert(CLI::App& command, ConvertOptions& options) {
     declare_format(command, options.format);
     command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
     command
-        .add_option("--crease", options.crease_deg,
+        .add_option("--crease", options.crease,
                     "Crease angle of STL files: edges between faces at a larger angle stay sharp")
         ->option_text("DEG");
     command
-        .add_option("--memory", options.memory_gb,
+        .add_option("--memory", options.memory,
                     "Most that the arrays and images of IN may take; 0: three quarters of what is available")
         ->option_text("GB");
     command.add_option("--variant", options.variant, field("load.variant").doc)->option_text("NAME");
     declare_mesh_steps(command, options.steps);
 }
 
-int run_convert(const ConvertOptions& options) {
+/// What options of reading say, as settings take it.
+Settings settings_of(const ConvertOptions& options) {
+    RenderOptions look;
+    for (const RenderOptions::Shorthand& shorthand :
+         {RenderOptions::Shorthand{"--crease", "load.crease_deg", options.crease},
+          {"--memory", "limits.memory", options.memory},
+          {"--variant", "load.variant", options.variant}})
+        if (!shorthand.text.empty()) look.shorthands.push_back(shorthand);
+    Settings settings;
+    apply(look, settings);
+    return settings;
+}
+
+void check_convert(const ConvertOptions& options) {
     require(!options.out.empty(), "convert", "IN and OUT");
     check_input("convert", {options.in});
+    settings_of(options);
+}
+
+int run_convert(const ConvertOptions& options) {
     check_writable(options.out);
     if (!is_image_file(options.in)) {
-        const Mesh mesh = load_input(options.in, {.crease_angle_deg = float(options.crease_deg),
-                                                  .memory_gb = options.memory_gb,
-                                                  .format = options.format,
-                                                  .variant = options.variant})
-                              .mesh;
+        const Mesh mesh =
+            load_input(options.in, app::load_options(settings_of(options), options.format)).mesh;
         Phases phases(options.steps.empty() ? 1 : int(options.steps.size()) + 2);
         const Mesh changed = apply_mesh_steps(mesh, options.steps, phases);
         phases.begin("writing " + options.out);
@@ -61,7 +77,7 @@ void add_convert(CLI::App& app, Job& job) {
         *app.add_subcommand(
             "convert",
             "Convert a mesh or an image to another format; mesh operations run in the order given"),
-        job, declare_convert, run_convert);
+        job, declare_convert, run_convert, check_convert);
 }
 
 }  // namespace easypbr::cli

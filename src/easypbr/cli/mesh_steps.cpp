@@ -1,9 +1,12 @@
 #include "easypbr/cli/mesh_steps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "easypbr/core/error.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
@@ -171,6 +174,16 @@ void declare_splats(StepOptions& steps) {
         [](const Mesh& mesh, int resolution) { return mesh_from_splats(mesh, {.resolution = resolution}); });
 }
 
+/// The option in place of the function that a message begins with: "crop_box: expected ...".
+std::string message_of(const MeshStep& step, std::string_view message) {
+    const size_t colon = message.find(": ");
+    const std::string_view first = message.substr(0, colon);
+    const bool is_function = colon != message.npos && std::ranges::all_of(first, [](char c) {
+                                 return (c >= 'a' && c <= 'z') || c == '_';
+                             });
+    return fmt::format("{}: {}", step.option, is_function ? message.substr(colon + 2) : message);
+}
+
 }  // namespace
 
 void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps) {
@@ -189,7 +202,11 @@ Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps, Phas
     Mesh result = merge(mesh);
     for (const MeshStep& step : steps) {
         phases.begin(step.option);
-        result = step.apply(result);
+        try {
+            result = step.apply(result);
+        } catch (const ArgumentError& error) {
+            throw ArgumentError(message_of(step, error.what()));
+        }
     }
     return result;
 }

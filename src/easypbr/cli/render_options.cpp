@@ -135,7 +135,8 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command.add_option("--camera", options.camera, "Camera of the file (glTF) by name, or by number from 0")
         ->option_text("NAME|NUMBER");
     command
-        .add_option("--camera-axes", options.camera_axes, "Camera axes of --camera-pose: opengl or opencv")
+        .add_option("--camera-axes", options.camera_axes,
+                    "Camera axes of --camera-pose: opengl (default) or opencv")
         ->check(CLI::IsMember({"opengl", "opencv"}));
     command.add_option("--turntable", options.turntable, "Record a turntable of N frames")->option_text("N");
     command.add_option("--camera-path", options.camera_path, "Record along a camera path from a JSON file")

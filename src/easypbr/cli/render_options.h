@@ -31,7 +31,7 @@ struct RenderOptions {
     std::string size, background, ortho;
     std::string camera;  ///< name or number of a camera in the files
     std::string focus;   ///< "X,Y"
-    std::string camera_pose, camera_axes = "opengl";
+    std::string camera_pose, camera_axes;
     std::optional<int> turntable;      ///< frames of one turn
     std::string camera_path;           ///< file
     std::string orbit;                 ///< "36x3": columns and rows of a page

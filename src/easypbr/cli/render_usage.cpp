@@ -77,6 +77,8 @@ void check_usage(const RenderOptions& options) {
         for (const RenderOptions::Shorthand& shorthand : options.shorthands)
             if (shorthand.setting == "camera.position" || shorthand.setting == "camera.target")
                 throw UsageError("render: --camera-pose and " + shorthand.option + " exclude each other");
+    if (!options.camera_axes.empty() && options.camera_pose.empty())
+        throw UsageError("render: --camera-axes needs --camera-pose");
     if (!options.camera.empty() && !options.camera_pose.empty())
         throw UsageError("render: --camera and --camera-pose exclude each other");
     if (options.bit_depth == 16 && options.output != "-" && extension_of(options.output) != "png")

@@ -223,6 +223,14 @@ void show_unlit_exactly(Mesh& mesh) {
     for (Mesh child : mesh.children()) show_unlit_exactly(child);
 }
 
+/// What every file takes that is read, of whatever format.
+void finish(LoadedScene& scene, const fs::path& path, const LoadOptions& options) {
+    if (!options.variant.empty() && scene.variants.empty())
+        log_warning(
+            fmt::format("{} has no material variants: '{}' changes nothing", path.string(), options.variant));
+    show_unlit_exactly(scene.mesh);
+}
+
 LoadedScene load_content(const Source& source, const LoadOptions& options) {
     const MemoryScope memory(source.path.string(), limit_of(options));
     if (source.bytes.empty())
@@ -230,7 +238,7 @@ LoadedScene load_content(const Source& source, const LoadOptions& options) {
     const std::string format = options.format.empty() ? format_of_content(source.bytes) : options.format;
     if (!is_gltf(format) && !readers().contains(format)) fail_format(source.path, format);
     LoadedScene scene = decode(source, format, options);
-    show_unlit_exactly(scene.mesh);
+    finish(scene, source.path, options);
     return scene;
 }
 
@@ -239,7 +247,7 @@ LoadedScene load_content(const Source& source, const LoadOptions& options) {
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
     const MemoryScope memory(path.string(), limit_of(options));
     LoadedScene scene = read_scene(path, options);
-    show_unlit_exactly(scene.mesh);
+    finish(scene, path, options);
     return scene;
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/log.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr::io {
@@ -21,9 +20,8 @@ GltfVariants::GltfVariants(const GltfDocument& document, const std::string& chos
 }
 
 void GltfVariants::choose(const std::string& name) {
+    if (names_.empty()) return;
     const std::string path = document_.path().string();
-    if (names_.empty())
-        return log_warning(fmt::format("{} has no material variants: '{}' changes nothing", path, name));
     const auto found = std::ranges::find(names_, name);
     if (found == names_.end())
         throw NameError(fmt::format("{} has no material variant '{}'{}: it has {}", path, name,
