@@ -462,14 +462,3 @@ def test_a_full_disk_is_an_error(made, tmp_path, monkeypatch):
     with pytest.raises(FileError, match="No space left"):
         generate(small(), tmp_path / "full", workers=1)
     assert not list((tmp_path / "full/unfinished").glob("*"))
-
-
-def test_command_line(tmp_path):
-    command = [sys.executable, "-m", "easypbr", "dataset"]
-    done = subprocess.run([*command, "--demo", "-o", "out", "--count", "1", "--writers", "yolo", "--workers", "1"],
-                          cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert "1/1" in done.stderr and "1 pictures with" in done.stdout
-    assert (tmp_path / "out/images/000000.png").exists() and (tmp_path / "out/contact_sheet.png").exists()
-    assert subprocess.run([*command, "nothing.toml", "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 1
-    assert subprocess.run([*command, "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 2

@@ -43,7 +43,7 @@ def generate(
     generates into it, ContextError when no cluster answers, and what drawing and writing raise."""
     spec.check()
     folder = Path(folder).absolute()
-    _check_engine(engine, address, workers, threads)
+    check_engine(engine, address, workers, threads)
     if engine == "ray":
         cluster.find_ray()  # Before anything is written.
     with locked(folder):
@@ -78,7 +78,8 @@ def _missing(spec: DatasetSpec, folder: Path, indices: Iterable[int]) -> list[in
     return [index for index in indices if not writer.is_finished(index)]
 
 
-def _check_engine(engine: str, address: str | None, workers: int | None, threads: int | None) -> None:
+def check_engine(engine: str, address: str | None, workers: int | None, threads: int | None) -> None:
+    """Raises ArgumentError for what cannot be, or does not go together."""
     if engine not in ("local", "ray"):
         raise ArgumentError(f"dataset: engine: expected local or ray, got '{engine}'")
     for name, value in (("workers", workers), ("threads", threads)):

@@ -38,7 +38,7 @@ class DatasetSpec(DatasetTables):
         """Reads a spec; files in it are relative to the TOML file's folder. Raises ArgumentError naming the key, FileError."""
         path = Path(path)
         try:
-            values = tomllib.loads(path.read_text(encoding="utf-8"))
+            values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
         except OSError as error:
             raise FileError(f"cannot read {path}: {error.strerror}") from None
         except ValueError as error:  # of TOML, or of UTF-8

@@ -33,41 +33,48 @@ constexpr const char* start =
     "sys.exit(main())\n";
 
 struct DatasetOptions {
-    std::string spec, output, count, seed, workers, threads, engine, address, writers, on_error;
-    bool demo = false, quiet = false;
+    std::string spec;
+    std::vector<std::string> arguments;  ///< options as the generator takes them
 };
 
-void declare_dataset(CLI::App& command, DatasetOptions& o) {
-    command.add_option("spec", o.spec, "Specification of the data set, a TOML file")->option_text("SPEC");
-    command.add_flag("--demo", o.demo, "Generate the built-in drones instead of a SPEC");
-    command
-        .add_option("-o,--output", o.output,
-                    "Folder to write; an interrupted run resumes with the missing frames")
-        ->option_text("FOLDER");
-    command.add_option("--count", o.count, "Number of images")->option_text("N");
-    command.add_option("--seed", o.seed, "Seed of the random numbers")->option_text("N");
-    command.add_option("--workers", o.workers, "Worker processes; default: one per two cores")
-        ->option_text("N");
-    command
-        .add_option("--threads", o.threads,
-                    "Cores of each worker; default: all cores divided among the workers, 1 with Ray")
-        ->option_text("N");
-    command
-        .add_option("--engine", o.engine,
-                    "Scheduler of the workers: local, or ray (pip install 'easypbr[ray]')")
-        ->option_text("local|ray");
-    command
-        .add_option("--address", o.address,
-                    "Ray cluster: HOST:PORT, or auto; its machines share the folder. Default: this machine")
-        ->option_text("ADDRESS");
-    command
-        .add_option("--writers", o.writers,
-                    "Formats, separated by commas: coco, yolo, kitti, flow, bop, nerfstudio, "
-                    "colmap, webdataset, raw, exr, png")
-        ->option_text("NAMES");
-    command.add_option("--on-error", o.on_error, "Unreadable mesh: stop, or skip and report it")
-        ->option_text("stop|skip");
-    command.add_flag("-q,--quiet", o.quiet, "Suppress progress");
+struct PassedOption {
+    const char *names, *placeholder, *help;
+};
+
+constexpr PassedOption passed_options[] = {
+    {"-o,--output", "FOLDER", "Folder to write; an interrupted run resumes with the missing frames"},
+    {"--count", "N", "Number of images"},
+    {"--seed", "N", "Seed of the random numbers"},
+    {"--workers", "N", "Worker processes; default: one per two cores"},
+    {"--threads", "N", "Cores of each worker; default: all cores divided among the workers, 1 with Ray"},
+    {"--engine", "local|ray", "Scheduler of the workers: local, or ray (pip install 'easypbr[ray]')"},
+    {"--address", "ADDRESS",
+     "Ray cluster: HOST:PORT, or auto; its machines share the folder. Default: this machine"},
+    {"--writers", "NAMES",
+     "Formats, separated by commas: coco, yolo, kitti, flow, bop, nerfstudio, colmap, webdataset, raw, exr, "
+     "png"},
+    {"--on-error", "stop|skip", "Unreadable mesh: stop, or skip and report it"}};
+
+void declare_dataset(CLI::App& command, DatasetOptions& options) {
+    std::vector<std::string>& arguments = options.arguments;
+    command.add_option("spec", options.spec, "Specification of the data set, a TOML file")
+        ->option_text("SPEC");
+    command.add_flag_callback(
+        "--demo", [&arguments] { arguments.emplace_back("--demo"); },
+        "Generate the built-in drones instead of a SPEC");
+    for (const PassedOption& passed : passed_options) {
+        // An empty value is one too: the generator says what is wrong with it.
+        const std::string names = passed.names, name = names.substr(names.rfind("--"));
+        command
+            .add_option_function<std::string>(
+                names,
+                [&arguments, name](const std::string& value) { arguments.push_back(name + "=" + value); },
+                passed.help)
+            ->option_text(passed.placeholder);
+    }
+    command.add_flag_callback(
+        "-q,--quiet", [&arguments] { arguments.emplace_back("--quiet"); },
+        "Print neither progress nor a summary");
 }
 
 std::string found_in_path(const std::string& name) {
@@ -93,17 +100,10 @@ std::string python() {
     return is_ours ? own.string() : found_in_path("python3");
 }
 
-int run_dataset(const DatasetOptions& o) {
+int run_dataset(const DatasetOptions& options) {
     std::vector<std::string> arguments = {python(), "-c", start};
-    if (!o.spec.empty()) arguments.push_back(o.spec);
-    if (o.demo) arguments.emplace_back("--demo");
-    if (o.quiet) arguments.emplace_back("--quiet");
-    const std::pair<const char*, const std::string&> values[] = {
-        {"--output", o.output},   {"--count", o.count},     {"--seed", o.seed},
-        {"--workers", o.workers}, {"--threads", o.threads}, {"--engine", o.engine},
-        {"--address", o.address}, {"--writers", o.writers}, {"--on-error", o.on_error}};
-    for (const auto& [name, value] : values)
-        if (!value.empty()) arguments.push_back(fmt::format("{}={}", name, value));
+    arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
+    if (!options.spec.empty()) arguments.insert(arguments.end(), {"--", options.spec});
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);

@@ -1,0 +1,46 @@
+"""easypbr dataset: what the command takes, says and returns."""
+import subprocess
+import sys
+
+import pytest
+
+
+def test_command_line(tmp_path):
+    command = [sys.executable, "-m", "easypbr", "dataset"]
+    done = subprocess.run([*command, "--demo", "-o", "out", "--count", "1", "--writers", "yolo", "--workers", "1"],
+                          cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "1/1" in done.stderr and "1 pictures with" in done.stdout
+    assert (tmp_path / "out/images/000000.png").exists() and (tmp_path / "out/contact_sheet.png").exists()
+    assert subprocess.run([*command, "nothing.toml", "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 1
+    assert subprocess.run([*command, "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 2
+
+
+@pytest.mark.parametrize("arguments, code, message", [
+    ("--demo -o out --count abc", 2, "dataset: --count: expected a whole number, got 'abc'"),
+    ("--demo -o out --count 0", 2, "dataset: count: expected 1 to 1000000, got 0"),
+    ("--demo -o out --workers 0", 2, "dataset: workers: expected 1 or more, got 0"),
+    ("--demo -o out --writers foo", 2, "dataset: writers (foo): expected coco"),
+    ("--demo -o out --writers=", 2, "dataset: writers (): expected coco"),
+    ("--demo -o out --engine foo", 2, "dataset: --engine: expected local or ray, got 'foo'"),
+    ("--demo", 2, "dataset: expected -o FOLDER"),
+    ("-o out", 2, "dataset: expected a SPEC or --demo"),
+    ("nothing.toml -o out", 1, "cannot read nothing.toml"),
+    ("wrong.toml -o out", 1, "wrong.toml: there is no 'cuont' (did you mean 'count'?)"),
+])  # fmt: skip
+def test_command_line_errors_are_one_line(tmp_path, arguments, code, message):
+    (tmp_path / "wrong.toml").write_text("cuont = 3\n")
+    command = [sys.executable, "-m", "easypbr", "dataset", *arguments.split()]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == code and line.startswith(f"easypbr: error: {message}"), line
+    assert [path.name for path in tmp_path.iterdir()] == ["wrong.toml"] and done.stdout == ""
+
+
+def test_quiet_command_line_prints_nothing(tmp_path):
+    """Of a spec that begins with a byte order mark, and whose name with a dash."""
+    (tmp_path / "-spec.toml").write_text('\ufeff[[objects]]\nsource = "builtin:drone"\nclass = "drone"\n', encoding="utf-8")
+    command = [sys.executable, "-m", "easypbr", "dataset", "-o", "out", "--count", "1", "--workers", "1", "--writers", "yolo", "--quiet"]
+    done = subprocess.run([*command, "--", "-spec.toml"], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (tmp_path / "out/images/000000.png").exists()
