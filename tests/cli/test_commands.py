@@ -295,7 +295,8 @@ def test_devices_are_chosen_by_name(easypbr, environment, sphere):
     ("EASYPBR_THREADS", "1.5", "EASYPBR_THREADS: expected a whole number of 1 or more, got '1.5'"),
     ("EASYPBR_CACHE_LIMIT", "1GB", "EASYPBR_CACHE_LIMIT: expected a number of GB, 0 or more, got '1GB'"),
 ])  # fmt: skip
-def test_wrong_variables_are_errors_and_empty_ones_are_none(easypbr, environment, sphere, tmp_path, monkeypatch, name, value, message):
+def test_wrong_variables_are_errors(easypbr, environment, sphere, tmp_path, monkeypatch, name, value, message):
+    """And empty ones are as if they were not set."""
     draw = ("render", sphere, "-o", "out.png", "--size", "64x48", "--mode", "raster")
     monkeypatch.setitem(environment, name, value)
     (line,) = easypbr(*draw, code=1).stderr.splitlines()

@@ -91,7 +91,7 @@ def test_timing_names_the_stages(render, sphere):
     (("-o", "f_%d.png", "--turntable", "2", "--save-settings", "f_0.png"), "-o and --save-settings would both write"),
     (("-o", "a.png", "--save-settings", "b.obj"), "--save-settings would write over b.obj, which FILE reads"),
     (("-o", "wood.png", "--texture", "base_color=wood.png"), "-o would write over wood.png, which a setting reads"),
-    (("-o", "a.png", "--settings", "look.json", "--save-settings", "look.json"), "would write over look.json, which --settings reads"),
+    (("-o", "a.png", "--settings", "look.json", "--save-settings", "look.json"), "write over look.json, which --settings reads"),
 ])  # fmt: skip
 def test_no_file_is_written_twice_and_none_that_is_read(render, box, tmp_path, options, message):
     for name in ("b.obj", "b_depth.obj"):
@@ -112,7 +112,8 @@ def test_output_is_checked_before_anything_is_read(render, tmp_path, output):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("size", ["0x600", "-4x3", "100000x100000", "99999999999999999999x3", "large", "800", "8.5x3", "800x600x3"])
+@pytest.mark.parametrize("size", ["0x600", "-4x3", "100000x100000", "99999999999999999999x3", "large", "800", "8.5x3",
+                                  "800x600x3"])
 def test_impossible_sizes_are_refused(render, sphere, tmp_path, size):
     assert size in one_error(render(sphere, "-o", "out.png", "--size", size, code=2))
     assert list(tmp_path.iterdir()) == []
@@ -162,7 +163,8 @@ def test_misspelt_names_get_a_hint(render, sphere, tmp_path, option, hint):
 
 @pytest.mark.parametrize("options", [
     ("--roughness", "7"), ("--metallic", "shiny"), ("--color", "#12345"), ("--set", "nonsense"), ("--samples", "0"),
-    ("--bit-depth", "12"), ("--flat", "--smooth"), ("--camera-axes", "blender"), ("--camera-axes", "opencv"), ("--size",), ("--background", "loud"),
+    ("--bit-depth", "12"), ("--flat", "--smooth"), ("--camera-axes", "blender"), ("--camera-axes", "opencv"),
+    ("--size",), ("--background", "loud"),
     ("--camera-pose", "p.txt", "--camera-position", "1,2,3")])
 def test_wrong_values_are_wrong_commands(render, sphere, tmp_path, options):
     one_error(render(sphere, "-o", "out.png", *options, code=2))

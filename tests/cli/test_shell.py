@@ -42,11 +42,29 @@ def bash(tmp_path_factory):
     (["easypbr", "dataset", "--engine", ""], ["local", "ray"]),
     (["easypbr", "completion", ""], ["bash", "zsh", "fish"]),
     (["easypbr", "man", "comp"], ["compare", "completion"]),
+    (["easypbr", "--device", ""], ["auto", "gl", "cpu"]),
+    (["easypbr", "render", "a.ply", "--device", "g"], ["gl"]),
+    (["easypbr", "--device", "cpu", "re"], ["render"]),
+    (["easypbr", "--device", "=", "cpu", "re"], ["render"]),  # bash parts words at "="
+    (["easypbr", "--device", "cpu", "render", "--tonem"], ["--tonemap"]),
+    (["easypbr", "--device", "cpu", "render", "--tonemap", "a"], ["aces", "agx"]),
+    (["easypbr", "--devi"], ["--device"]),
+    (["easypbr", "render", "--devi"], ["--device"]),
+    (["easypbr", "render", "--layers", "depth,normal_w"], ["depth,normal_world"]),
+    (["easypbr", "render", "--preset", ""], ["dark", "flat", "paper", "studio"]),
+    (["easypbr", "dataset", "--writers", "co"], ["coco", "colmap"]),
+    (["easypbr", "dataset", "--writers", "coco,yolo,co"], ["coco,yolo,coco", "coco,yolo,colmap"]),
     (["easypbr", "render", "dro"], []),  # bash completes files
     (["easypbr", "render", "-o", "out"], []),
 ])  # fmt: skip
 def test_bash_completes(bash, words, expected):
     assert bash(*words) == expected
+
+
+def test_the_formats_of_data_sets_are_all_completed(bash):
+    from easypbr.dataset.writers import WRITERS
+
+    assert set(bash("easypbr", "dataset", "--writers", "")) == set(WRITERS)
 
 
 def test_bash_answers_at_once(bash, tmp_path):

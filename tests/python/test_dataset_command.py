@@ -1,4 +1,5 @@
 """easypbr dataset: what the command takes, says and returns."""
+import shlex
 import subprocess
 import sys
 
@@ -21,7 +22,7 @@ def test_command_line(tmp_path):
     ("--demo -o out --count 0", 2, "dataset: count: expected 1 to 1000000, got 0"),
     ("--demo -o out --workers 0", 2, "dataset: workers: expected 1 or more, got 0"),
     ("--demo -o out --writers foo", 2, "dataset: writers (foo): expected coco"),
-    ("--demo -o out --writers=", 2, "dataset: writers (): expected coco"),
+    ("--demo -o out --writers ''", 2, "dataset: writers (): expected coco"),
     ("--demo -o out --engine foo", 2, "dataset: --engine: expected local or ray, got 'foo'"),
     ("--demo", 2, "dataset: expected -o FOLDER"),
     ("-o out", 2, "dataset: expected a SPEC or --demo"),
@@ -30,7 +31,7 @@ def test_command_line(tmp_path):
 ])  # fmt: skip
 def test_command_line_errors_are_one_line(tmp_path, arguments, code, message):
     (tmp_path / "wrong.toml").write_text("cuont = 3\n")
-    command = [sys.executable, "-m", "easypbr", "dataset", *arguments.split()]
+    command = [sys.executable, "-m", "easypbr", "dataset", *shlex.split(arguments)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     (line,) = done.stderr.splitlines()
     assert done.returncode == code and line.startswith(f"easypbr: error: {message}"), line
@@ -40,7 +41,8 @@ def test_command_line_errors_are_one_line(tmp_path, arguments, code, message):
 def test_quiet_command_line_prints_nothing(tmp_path):
     """Of a spec that begins with a byte order mark, and whose name with a dash."""
     (tmp_path / "-spec.toml").write_text('\ufeff[[objects]]\nsource = "builtin:drone"\nclass = "drone"\n', encoding="utf-8")
-    command = [sys.executable, "-m", "easypbr", "dataset", "-o", "out", "--count", "1", "--workers", "1", "--writers", "yolo", "--quiet"]
-    done = subprocess.run([*command, "--", "-spec.toml"], cwd=tmp_path, capture_output=True, text=True)
+    options = "-o out --count 1 --workers 1 --writers yolo --quiet -- -spec.toml"
+    command = [sys.executable, "-m", "easypbr", "dataset", *options.split()]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert (tmp_path / "out/images/000000.png").exists()

@@ -121,7 +121,7 @@ void add_commands(CLI::App& app, Job& job) {
                ::setenv("EASYPBR_DEVICE", name.c_str(), 1);
            },
            "What draws: gl, cpu, or auto for a GPU where there is one, else the CPU (EASYPBR_DEVICE)")
-        ->option_text("NAME");
+        ->option_text("auto|gl|cpu");
     app.fallthrough();
     app.require_subcommand(0, 1);
     app.allow_extras();

@@ -71,6 +71,9 @@ void set_job(CLI::App& command, Job& job, void (*declare)(CLI::App&, Options&), 
     });
 }
 
+/// The formats that `dataset --writers` takes.
+std::vector<std::string> dataset_writers();
+
 /// Throws UsageError "COMMAND: expected WHAT" unless `given`.
 void require(bool given, std::string_view command, std::string_view what);
 

@@ -39,10 +39,13 @@ std::vector<std::string> command_names(const std::vector<CommandRow>& table) {
     return names;
 }
 
-std::string option_words(const CommandRow& command) {
+/// The command's options, then those of the program that it has not itself.
+std::string option_words(const CommandRow& command, const CommandRow& program) {
     std::vector<std::string> names;
-    for (const OptionRow& option : command.options)
-        for (std::string& name : with_dashes(option)) names.push_back(std::move(name));
+    for (const CommandRow* row : {&command, &program})
+        for (const OptionRow& option : row->options)
+            for (std::string& name : with_dashes(option))
+                if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
     return fmt::format("{}", fmt::join(names, " "));
 }
 
@@ -52,48 +55,75 @@ std::string argument_words(const CommandRow& command) {
     return fmt::format("{}", fmt::join(command.arguments.front().choices, " "));
 }
 
-std::string bash_values(const CommandRow& command) {
+/// A pattern of a case for each of the option's names behind `before`, which is a pattern itself.
+std::string bash_patterns(const OptionRow& option, const std::string& before) {
+    std::vector<std::string> patterns;
+    for (const std::string& name : with_dashes(option))
+        patterns.push_back(fmt::format("{}' {}'", before, name));
+    return fmt::format("{}", fmt::join(patterns, " | "));
+}
+
+std::string bash_values(const CommandRow& command, const std::string& before) {
     std::string text;
     if (const std::string words = argument_words(command); !words.empty())
         text += fmt::format("    '{} {}') words='{}' ;;\n", command.name, command.name, quoted(words));
     for (const OptionRow& option : command.options) {
         if (option.placeholder.empty()) continue;
-        std::vector<std::string> patterns;
-        for (const std::string& name : with_dashes(option))
-            patterns.push_back(fmt::format("'{} {}'", command.name, name));
         // Without words bash completes files.
-        text += fmt::format("    {}) words='{}' ;;\n", fmt::join(patterns, " | "),
-                            quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+        text += fmt::format("    {}) words='{}'{} ;;\n", bash_patterns(option, before),
+                            quoted(fmt::format("{}", fmt::join(option.choices, " "))),
+                            option.is_list ? " list=1" : "");
     }
     return text;
 }
 
+/// Patterns of the program's options that take a value, which may stand before the command.
+std::string bash_value_options(const CommandRow& program) {
+    std::vector<std::string> patterns;
+    for (const OptionRow& option : program.options)
+        if (!option.placeholder.empty())
+            for (const std::string& name : with_dashes(option)) patterns.push_back(name);
+    return fmt::format("{}", fmt::join(patterns, " | "));
+}
+
 std::string bash_completion(const std::vector<CommandRow>& table) {
+    const CommandRow& program = table.front();
     std::string values, options;
     for (size_t i = 1; i < table.size(); ++i) {
-        values += bash_values(table[i]);
-        options += fmt::format("      {}) words='{}' ;;\n", table[i].name, option_words(table[i]));
+        values += bash_values(table[i], fmt::format("'{}'", table[i].name));
+        options += fmt::format("      {}) words='{}' ;;\n", table[i].name, option_words(table[i], program));
     }
+    // The program's own options may follow any command.
+    values += bash_values(program, "*");
     return fmt::format(
         R"(# Completion of easypbr for bash, made from its table of options: easypbr completion bash
 _easypbr() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words=
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words= list= command= before= i
   COMPREPLY=()
-  if [ "$COMP_CWORD" = 1 ]; then
-    COMPREPLY=($(compgen -W '{} {}' -- "$current"))
-    return
-  fi
-  case "${{COMP_WORDS[1]}} $previous" in
-{}    *) [[ $current == -* ]] && case "${{COMP_WORDS[1]}}" in
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    case "${{COMP_WORDS[i]}}" in
+    {}) [ "${{COMP_WORDS[i+1]}}" = "=" ] && ((i += 2)) || ((++i)) ;;
+    -*) ;;
+    *) command=${{COMP_WORDS[i]}}; break ;;
+    esac
+  done
+  case "$command $previous" in
+{}    *) case "$command" in
+      '') words='{} {}' ;;
+      *) [[ $current == -* ]] && case "$command" in
 {}    esac ;;
+    esac ;;
   esac
-  [ -n "$words" ] && COMPREPLY=($(compgen -W "$words" -- "$current"))
+  if [ -n "$list" ] && [[ $current == *,* ]]; then before=${{current%,*}},; fi
+  [ -n "$words" ] && COMPREPLY=($(compgen -P "$before" -W "$words" -- "${{current#"$before"}}"))
+  [ -n "$list" ] && compopt -o nospace 2>/dev/null
   [[ ${{#COMPREPLY[@]}} = 1 && ${{COMPREPLY[0]}} == *= ]] && compopt -o nospace 2>/dev/null
   return 0
 }}
 complete -o default -F _easypbr easypbr
 )",
-        fmt::join(command_names(table), " "), option_words(table.front()), values, options);
+        bash_value_options(program), values, fmt::join(command_names(table), " "),
+        option_words(program, program), options);
 }
 
 /// Within the brackets and colons of zsh's _arguments.

@@ -50,9 +50,8 @@ constexpr PassedOption passed_options[] = {
     {"--engine", "local|ray", "Scheduler of the workers: local, or ray (pip install 'easypbr[ray]')"},
     {"--address", "ADDRESS",
      "Ray cluster: HOST:PORT, or auto; its machines share the folder. Default: this machine"},
-    {"--writers", "NAMES",
-     "Formats, separated by commas: coco, yolo, kitti, flow, bop, nerfstudio, colmap, webdataset, raw, exr, "
-     "png"},
+    {"--writers", "A,B",
+     "Formats: coco, yolo, kitti, flow, bop, nerfstudio, colmap, webdataset, raw, exr, png"},
     {"--on-error", "stop|skip", "Unreadable mesh: stop, or skip and report it"}};
 
 void declare_dataset(CLI::App& command, DatasetOptions& options) {
@@ -116,6 +115,11 @@ int run_dataset(const DatasetOptions& options) {
 }
 
 }  // namespace
+
+std::vector<std::string> dataset_writers() {
+    return {"coco",   "yolo",       "kitti", "flow", "bop", "nerfstudio",
+            "colmap", "webdataset", "raw",   "exr",  "png"};
+}
 
 void add_dataset(CLI::App& app, Job& job) {
     set_job<DatasetOptions>(*app.add_subcommand("dataset", "Generate annotated images for training"), job,

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <sstream>
 
+#include "easypbr/cli/command.h"
 #include "easypbr/cli/parse_errors.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/dataset/ground_truth.h"
+#include "easypbr/io/settings/presets.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/label_map.h"
 #include "easypbr/scene/material_table.h"
@@ -42,6 +44,8 @@ std::vector<std::string> choices_of(const std::string& name, const CLI::Option& 
     if (name == "style") return settings_below("style.");
     if (name == "texture") return textures();
     if (name == "layers") return dataset::truth_layer_names();
+    if (name == "preset") return io::preset_names();
+    if (name == "writers") return dataset_writers();
     if (name == "label-map") return built_in_label_map_names();
     if (const std::string setting = setting_of_shorthand("--" + name); !setting.empty())
         if (const Field& known = field(setting); !known.choices.empty()) return known.choices;
@@ -64,6 +68,7 @@ OptionRow row_of(const CLI::Option& option) {
         if (const size_t end = row.placeholder.find(':'); end != row.placeholder.npos)
             row.placeholder = row.placeholder.substr(0, end);
     }
+    row.is_list = !row.choices.empty() && row.placeholder.find(',') != row.placeholder.npos;
     row.takes_file = row.placeholder.find("FILE") != row.placeholder.npos ||
                      row.placeholder.find("FOLDER") != row.placeholder.npos || name == "texture";
     return row;

@@ -13,6 +13,7 @@ struct OptionRow {
     std::string help;
     std::vector<std::string> choices;  ///< of its value; those that end in "=" go on
     bool takes_file = false;
+    bool is_list = false;  ///< several of the choices, separated by commas
 };
 
 struct CommandRow {
