@@ -11,7 +11,7 @@ import time
 import pytest
 import yaml
 
-from easypbr import ArgumentError
+from easypbr import ArgumentError, FileError
 from easypbr.dataset import MotionSpec, ObjectSpec, generate
 from easypbr.dataset.folder import FolderWriter, locked
 from easypbr.dataset.writers import WRITERS
@@ -196,3 +196,11 @@ def test_damaged_frames_are_made_again(tmp_path, damage):
         (tmp_path / "records/000001.json").write_text(damage)
     generate(spec, tmp_path, workers=1)
     assert hashes(tmp_path) == made
+
+
+@pytest.mark.parametrize("name", ["plain", "plain/set"])
+def test_a_file_in_place_of_the_folder_is_named(tmp_path, name):
+    (tmp_path / "plain").write_text("kept")
+    with pytest.raises(FileError, match=f"{name}: expected a folder, got a file"), locked(tmp_path / name):
+        pass
+    assert (tmp_path / "plain").read_text() == "kept"
