@@ -47,7 +47,7 @@ struct ServeOptions {
 };
 
 /// Throws ArgumentError for options out of range, whatever files and this machine hold.
-void check(const ServeOptions& options);
+void check_options(const ServeOptions& options);
 
 struct ServerClient {
     uint64_t id = 0;

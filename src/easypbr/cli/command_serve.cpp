@@ -127,8 +127,8 @@ void check_serve(const ServeCommand& options) {
     check_input("serve", options.shown.files);
     require(!options.shown.files.empty() || !options.files.empty(), "serve",
             "at least one FILE, or --files FOLDER");
-    check(options.shown.start);
-    remote::check(server_options_of(options));
+    check_start(options.shown.start);
+    remote::check_options(server_options_of(options));
 }
 
 int run_serve(const ServeCommand& options) {

@@ -71,7 +71,7 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
 
 void check_view(const ViewOptions& options) {
     check_input("view", options.shown.files);
-    check(options.shown.start);
+    check_start(options.shown.start);
     parse_size(options.size);
 }
 

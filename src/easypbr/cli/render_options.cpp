@@ -280,7 +280,7 @@ void declare_settings(CLI::App& command, StartSettings& start, std::vector<std::
         ->option_text("FILE");
 }
 
-void check(const StartSettings& start) {
+void check_start(const StartSettings& start) {
     if (!start.preset.empty()) io::check_preset(start.preset);
 }
 

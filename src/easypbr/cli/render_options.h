@@ -82,7 +82,7 @@ void declare_render_options(CLI::App& command, RenderOptions& options);
 void declare_settings(CLI::App& command, StartSettings& start, std::vector<std::string>& values);
 
 /// Throws NameError for a preset that is neither built in nor a file's name.
-void check(const StartSettings& start);
+void check_start(const StartSettings& start);
 
 /// Sets what --preset says, then what --settings says. Throws as app::load_settings() and
 /// app::apply_preset().

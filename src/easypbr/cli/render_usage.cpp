@@ -70,7 +70,7 @@ void check_usage(const RenderOptions& options) {
     check_page_usage(options);
     check_line_drawing_usage(options);
     parse_styles(options.styles, unique_names(options.files));
-    check(options.start);
+    check_start(options.start);
     if (!options.label_map.empty()) io::check_label_map(options.label_map);
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
     if (!options.camera_pose.empty())

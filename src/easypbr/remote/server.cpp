@@ -67,7 +67,7 @@ void warn_of_strangers(const ServeOptions& options) {
 
 }  // namespace
 
-void check(const ServeOptions& options) {
+void check_options(const ServeOptions& options) {
     network_options(options);
     check_codec(options);
 }
