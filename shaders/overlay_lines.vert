@@ -11,7 +11,7 @@ uniform mat4 u_clip_from_mesh;
 uniform vec2 u_size;
 uniform float u_half_width;  // pixels
 uniform float u_least_w;     // w of the near plane
-uniform vec4 u_color;        // linear, in place of the ends' own where w is not 0
+uniform vec4 u_color;        // linear; w: 0: the ends have their own, -1: their own opacity, 1: none
 
 noperspective out vec2 v_place;    // along and across the segment, pixels from its start
 flat out float v_length;           // pixels
@@ -47,8 +47,10 @@ void main() {
     v_depths = vec2(a.z / a.w, b.z / b.w);
     gl_Position = vec4(pixel / (0.5 * u_size), at_end ? v_depths.y : v_depths.x, 1.0);
     bool has_own = u_color.w == 0.0;
-    v_start_color = has_own ? vec4(srgb_decode(a_start_color.rgb), a_start_color.a) : u_color;
-    v_end_color = has_own ? vec4(srgb_decode(a_end_color.rgb), a_end_color.a) : u_color;
+    v_start_color.rgb = has_own ? srgb_decode(a_start_color.rgb) : u_color.rgb;
+    v_end_color.rgb = has_own ? srgb_decode(a_end_color.rgb) : u_color.rgb;
+    v_start_color.a = u_color.w > 0.0 ? 1.0 : a_start_color.a;
+    v_end_color.a = u_color.w > 0.0 ? 1.0 : a_end_color.a;
     v_parts = vec2(from, to);
     v_w = vec2(a.w, b.w);
     v_table = a_table;

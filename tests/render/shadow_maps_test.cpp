@@ -324,7 +324,7 @@ TEST(ShadowLights, WrongOnesAreNamed) {
     EXPECT_EQ(message([](Light& l) { l.type = LightType::spot, l.direction = Vec3::Zero(); }),
               "light 'bad': direction: expected a vector with a length, got (0, 0, 0)");
     EXPECT_EQ(message([&](Light& l) { l.position.y() = nan; }),
-              "light 'bad': position: expected 3 numbers, got (1, nan, 3)");
+              "light 'bad': position: expected finite numbers, got (1, nan, 3)");
     EXPECT_EQ(message([](Light&) {}), "accepted");
 }
 

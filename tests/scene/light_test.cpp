@@ -95,7 +95,7 @@ TEST(Light, NumbersOutsideOfTheirRangeAreNamed) {
     EXPECT_EQ(message_of(light), "light 'lamp': angular_radius_deg: expected 0 to 45 degrees, got 46");
     light = {};
     light.position.x() = std::nanf("");
-    EXPECT_EQ(message_of(light), "light 'lamp': position: expected 3 numbers, got (nan, 0, 0)");
+    EXPECT_EQ(message_of(light), "light 'lamp': position: expected finite numbers, got (nan, 0, 0)");
     light = {};
     light.direction = {0, 0, 0};
     EXPECT_EQ(message_of(light), "accepted") << "a point light has no direction";

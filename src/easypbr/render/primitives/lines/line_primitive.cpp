@@ -23,9 +23,10 @@ struct Stroke {
     std::optional<Vec3> color;  ///< linear; nothing: the data's own
     std::optional<float> normal_length;
 
+    /// As the shader takes it. Lines that are the data's keep its opacity.
     Vec4 color_or_none() const {
         Vec4 c = Vec4::Zero();
-        if (color) c << *color, 1;
+        if (color) c << *color, (kind == gpu::LineKind::edges ? -1.0f : 1.0f);
         return c;
     }
 };

@@ -33,14 +33,12 @@ Part part_of(const Vec4& start, const Vec4& end, const LineView& view) {
     return part;
 }
 
-/// `given` counts where its w is not 0.
+/// See LineView::color for `given`.
 void set_color(float* to, const Rgba8& own, const Vec4& given) {
-    Vec4 color = given;
-    if (given.w() == 0) {
-        const Vec4 encoded = Vec4(own[0], own[1], own[2], own[3]) / 255.0f;
-        color << linear_from_srgb(Vec3(encoded.head<3>())), encoded.w();
-    }
-    std::copy_n(color.data(), 4, to);
+    const Vec4 encoded = Vec4(own[0], own[1], own[2], own[3]) / 255.0f;
+    const Vec3 color = given.w() == 0 ? linear_from_srgb(Vec3(encoded.head<3>())) : Vec3(given.head<3>());
+    std::copy_n(color.data(), 3, to);
+    to[3] = given.w() > 0 ? 1 : encoded.w();
 }
 
 Vec2 pixel_of(const Vec4& clip, const Vec2& size) {

@@ -16,7 +16,7 @@ struct LineView {
     Vec2 size{0, 0};  ///< of the picture, pixels
     bool orthographic = false;
     float near = 0;          ///< of a perspective camera
-    Vec4 color{0, 0, 0, 0};  ///< linear, in place of the segments' own where w is not 0
+    Vec4 color{0, 0, 0, 0};  ///< linear; w: 0: the segments' own, -1: their own opacity, 1: none
 };
 
 /// Those that are not wholly before the near plane (or, orthographic, beyond near and far plane), which cut
