@@ -82,7 +82,7 @@ def test_options_end_at_two_dashes(easypbr, box, tmp_path):
     assert png.read(tmp_path / "out.png").shape[:2] == (24, 32)
     assert json.loads(easypbr("info", "--json", "--", "-dash.obj").stdout)["faces"] == 12
     assert json.loads(easypbr("info", "--json", box, "--").stdout)["faces"] == 12
-    easypbr("--", "convert", "--", "-dash.obj", "-copy.ply")
+    easypbr("convert", "--", "-dash.obj", "-copy.ply")
     assert (tmp_path / "-copy.ply").exists()
 
 

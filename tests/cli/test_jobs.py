@@ -1,4 +1,5 @@
 """`easypbr render` as a job: files in and out, batches, settings files, failures."""
+import json
 import re
 import subprocess
 
@@ -91,7 +92,6 @@ def test_timing_names_the_stages(render, sphere):
     (("-o", "f_%d.png", "--turntable", "2", "--save-settings", "f_0.png"), "-o and --save-settings would both write"),
     (("-o", "a.png", "--save-settings", "b.obj"), "--save-settings would write over b.obj, which FILE reads"),
     (("-o", "wood.png", "--texture", "base_color=wood.png"), "-o would write over wood.png, which a setting reads"),
-    (("-o", "a.png", "--settings", "look.json", "--save-settings", "look.json"), "write over look.json, which --settings reads"),
 ])  # fmt: skip
 def test_no_file_is_written_twice_and_none_that_is_read(render, box, tmp_path, options, message):
     for name in ("b.obj", "b_depth.obj"):
@@ -103,6 +103,13 @@ def test_no_file_is_written_twice_and_none_that_is_read(render, box, tmp_path, o
     options = [option.replace("{folder}", str(tmp_path)) for option in options]
     assert message in one_error(render("b.obj", "b_depth.obj", *options, code=2))
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+
+
+def test_settings_are_saved_where_they_were_read(render, box, tmp_path):
+    (tmp_path / "look.json").write_text('{"easypbr": 1, "settings": {"image.samples": 2}}')
+    render(box, "-o", "a.png", "--settings", "look.json", "--set", "image.size=32,24", "--save-settings", "look.json")
+    saved = json.loads((tmp_path / "look.json").read_text())["settings"]
+    assert (saved["image.samples"], saved["image.size"]) == (2, [32, 24])
 
 
 @pytest.mark.parametrize("output", ["missing/out.png", "out.xyz", "."])

@@ -110,8 +110,8 @@ std::vector<NamedPath> written_for(const std::vector<Picture>& pictures, const R
 }
 
 std::vector<NamedPath> read_for(const RenderOptions& options, const Settings& settings) {
-    std::vector<NamedPath> paths = {{"--settings", options.start.settings},
-                                    {"--preset", options.start.preset},
+    // Not those of --settings: they are read as a whole, and may be saved again with what was changed.
+    std::vector<NamedPath> paths = {{"--preset", options.start.preset},
                                     {"--camera-pose", options.camera_pose},
                                     {"--camera-path", options.camera_path},
                                     {"--label-map", options.label_map}};

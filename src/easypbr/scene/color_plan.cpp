@@ -237,7 +237,7 @@ class Planner {
     }
 
     void start_key(uint64_t revision) {
-        // Points, surfels and voxels are coloured alike.
+        // What stands for single vertices is coloured alike.
         const DrawMode alike = interpolates() ? mode_ : DrawMode::points;
         plan_.key = fmt::format("{} {} {} {}", int(plan_.by), int(alike), int(plan_.element), revision);
     }
