@@ -67,7 +67,9 @@ void declare_dataset(CLI::App& command, DatasetOptions& options) {
         command
             .add_option_function<std::string>(
                 names,
-                [&arguments, name](const std::string& value) { arguments.push_back(name + "=" + value); },
+                [&arguments, name](const std::string& value) {
+                    arguments.push_back(fmt::format("{}={}", name, value));
+                },
                 passed.help)
             ->option_text(passed.placeholder);
     }
