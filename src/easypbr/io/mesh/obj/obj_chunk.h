@@ -50,7 +50,7 @@ struct ObjChunk {
                          edges.values.size() + edges.relative.size();
         for (const ObjIndices& indices : corners) numbers += indices.values.size() + indices.relative.size();
         return numbers * sizeof(float) + materials.size() * sizeof(materials[0]) +
-               libraries.size() * sizeof(libraries[0]);
+               libraries.size() * sizeof(std::string);
     }
 };
 
