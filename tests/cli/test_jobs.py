@@ -1,5 +1,4 @@
 """`easypbr render` as a job: files in and out, batches, settings files, failures."""
-import json
 import re
 import subprocess
 
@@ -106,10 +105,11 @@ def test_no_file_is_written_twice_and_none_that_is_read(render, box, tmp_path, o
 
 
 def test_settings_are_saved_where_they_were_read(render, box, tmp_path):
-    (tmp_path / "look.json").write_text('{"easypbr": 1, "settings": {"image.samples": 2}}')
-    render(box, "-o", "a.png", "--settings", "look.json", "--set", "image.size=32,24", "--save-settings", "look.json")
-    saved = json.loads((tmp_path / "look.json").read_text())["settings"]
-    assert (saved["image.samples"], saved["image.size"]) == (2, [32, 24])
+    render(box, "-o", "a.png", "--background", "#102030", "--save-settings", "look.json")
+    render(box, "-o", "a.png", "--settings", "look.json", "--set", "tonemap.exposure=2", "--save-settings", "look.json")
+    render(box, "-o", "b.png", "--settings", "look.json")
+    assert png.read(tmp_path / "b.png")[0, 0].tolist() == [0x10, 0x20, 0x30, 255]
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
 @pytest.mark.parametrize("output", ["missing/out.png", "out.xyz", "."])
