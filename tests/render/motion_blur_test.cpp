@@ -105,6 +105,7 @@ TEST(MotionBlur, OfWhatJumpsIsTheMotionThatItIsSaidToHave) {
     const Eigen::Affine3d before(Eigen::Translation3d(-10, 0, 0));
     for (const bool hangs : {false, true}) {
         Moving moving;
+        moving.session.settings().motion_blur.shutter = 1;
         Mesh parent;
         if (hangs) {
             parent.add_child(moving.mesh);
@@ -128,6 +129,7 @@ TEST(MotionBlur, OfWhatJumpsIsTheMotionThatItIsSaidToHave) {
 // What a jumping child hangs from moved meanwhile, which counts as well.
 TEST(MotionBlur, OfAJumpOnWhatMoves) {
     Moving moving;
+    moving.session.settings().motion_blur.shutter = 1;
     Mesh parent;
     parent.add_child(moving.mesh);
     moving.scene.show(parent, "square");
