@@ -66,7 +66,7 @@ def test_places_in_a_large_picture_are_those_of_the_pointer(open_page):
     """Of more pixels than a picture may have on a side."""
     page = open_page(width=5120, height=700)
     page.page.get_by_role("button", name="Controls").click()
-    # The picture of the page without the panel is as wide, but not as high.
+    # The picture from before the click is as wide, but not as high.
     page.page.wait_for_function("""() => {
         const c = document.querySelector('canvas.picture');
         const fits = Math.abs(c.width / c.clientWidth - c.height / c.clientHeight) < 0.002;

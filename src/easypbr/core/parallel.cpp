@@ -9,11 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include "easypbr/core/control_group.h"
 #include "easypbr/core/error.h"
@@ -72,10 +70,8 @@ struct InLoop {
 std::optional<size_t> wanted_threads() {
     const std::optional<std::string> given = variable("EASYPBR_THREADS");
     if (!given) return std::nullopt;
-    int count = 0;
-    const char* end = given->data() + given->size();
-    const auto [stop, error] = std::from_chars(given->data(), end, count);
-    if (error != std::errc() || stop != end || count < 1)
+    const int count = whole_number(*given).value_or(0);
+    if (count < 1)
         throw ArgumentError(
             fmt::format("EASYPBR_THREADS: expected a whole number of 1 or more, got '{}'", *given));
     return size_t(count);

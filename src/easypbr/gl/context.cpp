@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -72,10 +71,8 @@ void require_libraries() {
 std::optional<int> device_by_number() {
     const std::optional<std::string> text = variable("EASYPBR_EGL_DEVICE");
     if (!text) return std::nullopt;
-    int number = 0;
-    const char* end = text->data() + text->size();
-    const auto [stop, error] = std::from_chars(text->data(), end, number);
-    if (error != std::errc() || stop != end || number < 0)
+    const int number = whole_number(*text).value_or(-1);
+    if (number < 0)
         throw ContextError(fmt::format(
             "EASYPBR_EGL_DEVICE: expected the number of an EGL device, from 0 on, got '{}'", *text));
     return number;
