@@ -2,6 +2,7 @@
 // with each of several sets of features. scripts/check_aarch64.sh compares what two processors print.
 #include "cross_inputs.h"
 #include "cross_places.h"
+#include "easypbr/native/flush_subnormals.h"
 
 namespace easypbr::native {
 
@@ -329,6 +330,7 @@ void check_lines() {
 
 int main() {
     using namespace easypbr::native;
+    const FlushSubnormals flush;
 #define EASYPBR_CHECK(name) check_shader<name##_uniforms>(#name, kernels.shade[size_t(Shader::name)]);
     EASYPBR_SHADERS(EASYPBR_CHECK)
 #undef EASYPBR_CHECK

@@ -13,6 +13,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/flush_subnormals.h"
 #include "native/instruction_sets.h"
 
 namespace easypbr::native {
@@ -82,6 +83,16 @@ const InstructionSet& chosen_set() {
     return *chosen;
 }
 
+/// The kernels in use, for one call.
+class Kernel {
+  public:
+    const Kernels* operator->() const { return kernels_; }
+
+  private:
+    FlushSubnormals flush_;
+    const Kernels* kernels_ = chosen_set().kernels;
+};
+
 /// Fills in the uniforms of a shader.
 class Setter {
   public:
@@ -145,6 +156,7 @@ void shade_with(ShadeRows kernel, const Inputs& inputs, const Region& region, in
     uniforms.visit(Setter(inputs));
     constexpr size_t rows = 8;
     parallel_chunks(size_t(std::max(0, y1 - y0)), rows, [&](size_t begin, size_t end) {
+        const FlushSubnormals flush;
         kernel(&uniforms, region, y0 + int(begin), y0 + int(end));
     });
 }
@@ -212,22 +224,22 @@ std::shared_ptr<const void> caster_uniforms(const Inputs& inputs) {
 }
 
 void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels) {
-    chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()));
+    Kernel()->resolve_triangles(triangles, pixels.data(), int(pixels.size()));
 }
 
 void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
                         std::span<float> alpha) {
-    chosen_set().kernels->alpha_of_triangles(triangles, pixels.data(), int(pixels.size()), alpha.data());
+    Kernel()->alpha_of_triangles(triangles, pixels.data(), int(pixels.size()), alpha.data());
 }
 
 void casters_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> texels,
                           std::span<float> values) {
-    chosen_set().kernels->casters_of_triangles(triangles, texels.data(), int(texels.size()), values.data());
+    Kernel()->casters_of_triangles(triangles, texels.data(), int(texels.size()), values.data());
 }
 
 void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
                 const HitSurfaces& surfaces) {
-    chosen_set().kernels->shade_hits(triangles, hits.data(), int(hits.size()), surfaces);
+    Kernel()->shade_hits(triangles, hits.data(), int(hits.size()), surfaces);
 }
 
 std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs) {
@@ -239,9 +251,9 @@ std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs)
     return nullptr;
 }
 
-#define EASYPBR_RUN(name)                                                             \
-    void run(const void* uniforms, const name##_stream& stream, int count) {          \
-        chosen_set().kernels->stream[size_t(Stream::name)](uniforms, &stream, count); \
+#define EASYPBR_RUN(name)                                                    \
+    void run(const void* uniforms, const name##_stream& stream, int count) { \
+        Kernel()->stream[size_t(Stream::name)](uniforms, &stream, count);    \
     }
 EASYPBR_STREAMS(EASYPBR_RUN)
 #undef EASYPBR_RUN
@@ -253,6 +265,7 @@ void draw_lines(const Inputs& inputs, const Region& region, std::span<const Scre
     const DrawLines kernel = chosen_set().kernels->draw_lines;
     parallel_for(bands.first.size() - 1, 1, [&](size_t band) {
         const uint32_t begin = bands.first[band], count = bands.first[band + 1] - begin;
+        const FlushSubnormals flush;
         const int top = region.y + int(band) * Bands::rows;
         kernel(&uniforms, region, lines.data(), bands.chosen.data() + begin, int(count), top,
                std::min(top + Bands::rows, y1));
@@ -261,56 +274,56 @@ void draw_lines(const Inputs& inputs, const Region& region, std::span<const Scre
 
 void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
                   std::span<const uint32_t> places) {
-    chosen_set().kernels->blend_splats(tile, splats.data(), places.data(), places.size());
+    Kernel()->blend_splats(tile, splats.data(), places.data(), places.size());
 }
 
 bool project_cluster(const ClusterFaces& faces, ClusterScreen& screen) {
-    return chosen_set().kernels->project_cluster(faces, screen);
+    return Kernel()->project_cluster(faces, screen);
 }
 
 int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen) {
-    return chosen_set().kernels->set_up_cluster(faces, screen);
+    return Kernel()->set_up_cluster(faces, screen);
 }
 
 int set_up_points(const PointBatch& points, PointScreen& screen) {
-    return chosen_set().kernels->set_up_points(points, screen);
+    return Kernel()->set_up_points(points, screen);
 }
 
 int set_up_ellipses(const EllipseBatch& ellipses, EllipseScreen& screen) {
-    return chosen_set().kernels->set_up_ellipses(ellipses, screen);
+    return Kernel()->set_up_ellipses(ellipses, screen);
 }
 
 void find_map_places(const float (&rotation)[3][3], const float* const (&directions)[3], int count, float* u,
                      float* v) {
-    chosen_set().kernels->find_map_places(rotation, directions, count, u, v);
+    Kernel()->find_map_places(rotation, directions, count, u, v);
 }
 
 void find_map_directions(const float (&rotation)[3][3], const float* u, const float* cosines,
                          const float* sines, int count, float* const (&directions)[3]) {
-    chosen_set().kernels->find_map_directions(rotation, u, cosines, sines, count, directions);
+    Kernel()->find_map_directions(rotation, u, cosines, sines, count, directions);
 }
 
 bool add_noisy_row(const NoisyRow& row, int y, NoisyTile& tile, BesideNoisy& beside) {
-    return chosen_set().kernels->add_noisy_row(row, y, tile, beside);
+    return Kernel()->add_noisy_row(row, y, tile, beside);
 }
 
 void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int count, const CameraPlaces& places) {
-    chosen_set().kernels->find_places(rays, pixels, count, places);
+    Kernel()->find_places(rays, pixels, count, places);
 }
 
 void sample_paths(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension, int count,
                   float* xs, float* ys) {
-    chosen_set().kernels->sample_paths(seeds, reversed_samples, dimension, count, xs, ys);
+    Kernel()->sample_paths(seeds, reversed_samples, dimension, count, xs, ys);
 }
 
 void sample_emitters(const FewEmitters& emitters, const EmitterPlaces& places, int count,
                      const EmitterPoints& points) {
-    chosen_set().kernels->sample_emitters(emitters, places, count, points);
+    Kernel()->sample_emitters(emitters, places, count, points);
 }
 
 void chances_of_emitters(const FewEmitters& emitters, const float* const (&from)[3], const int32_t* chosen,
                          int count, float* chances) {
-    chosen_set().kernels->chances_of_emitters(emitters, from, chosen, count, chances);
+    Kernel()->chances_of_emitters(emitters, from, chosen, count, chances);
 }
 
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {

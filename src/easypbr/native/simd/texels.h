@@ -124,13 +124,19 @@ INLINE uint32_t bits_of(float v) {
 INLINE float as_scalar(uint32_t bits) {
     return load<float>(&bits);
 }
-// Halves that are numbers: exact.
+/// Floats from the bits of halves that are numbers: exact, and without subnormal floats on the way.
+template <class Values, class Bits>
+INLINE Values widened_halves(Bits bits) {
+    const Bits size = bits & 0x7fff, subnormal = size < 0x400;
+    const Bits normal_bits = (size << 13) + (112 << 23),
+               subnormal_bits = Bits(__builtin_convertvector(size, Values) * 0x1p-24f);
+    return Values((subnormal & subnormal_bits) | (~subnormal & normal_bits) | (bits & 0x8000) << 16);
+}
 INLINE Floats8 from_halves(Shorts8 h) {
 #if defined(__F16C__)
     return Floats8(_mm256_cvtph_ps(__m128i(h)));
 #else
-    const Ints8 bits = __builtin_convertvector(h, Ints8);
-    return Floats8((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
+    return widened_halves<Floats8>(__builtin_convertvector(h, Ints8));
 #endif
 }
 #if defined(__AVX512F__)
@@ -149,8 +155,7 @@ INLINE uint16_t to_half(float v) {
     return uint16_t(sign | size >> 13);
 }
 INLINE Floats4 from_halves(Shorts4 h) {
-    const Ints4 bits = __builtin_convertvector(h, Ints4);
-    return Floats4((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
+    return widened_halves<Floats4>(__builtin_convertvector(h, Ints4));
 }
 /// Rounded to the nearest; those beyond the largest half are infinite.
 INLINE Shorts4 to_halves(Floats4 v) {
