@@ -193,23 +193,31 @@ INLINE vint gather(const int32_t* from, vint index) {
 struct Place {
     vint index;
     vbool inside;
-    bool all_inside, side_by_side;
+    bool all_inside;
 };
 INLINE Place place_of(const View& s, vint x, vint y) {
     x = clamp(x, 0, s.width - 1) - s.x;
     y = clamp(y, 0, s.height - 1) - s.y;
     const vbool inside = x >= 0 && x < s.held_width && y >= 0 && y < s.held_height;
     const vint index = y * s.held_width + x;
-    const Ints steps = index.v - splat(index.v[0]);
-    return {select(inside, index, vint(0)), inside, !any_lane(!inside),
-            !any_lane(vbool(Ints(steps != lane_numbers().v)))};
+    return {select(inside, index, vint(0)), inside, !any_lane(!inside)};
+}
+
+/// The index of the first lane's pixel where all lanes are side by side in what is held; else -1. Most
+/// fetches of passes over pictures are.
+INLINE int row_at(const View& s, vint x, vint y) {
+    const int column = x.v[0] - s.x, row = y.v[0] - s.y;
+    const Ints unlike = ((x.v - splat(x.v[0])) ^ lane_numbers().v) | (y.v ^ splat(y.v[0]));
+    if (any_lane(vbool(Ints(unlike != 0)))) return -1;
+    const bool held = column >= 0 && column + lanes <= s.held_width && row >= 0 && row < s.held_height;
+    return held ? row * s.held_width + column : -1;
 }
 
 /// One value of 32 bits per pixel.
 INLINE vint fetch_bits(const View& s, vint x, vint y) {
-    const Place p = place_of(s, x, y);
     const auto* data = reinterpret_cast<const int32_t*>(s.data);
-    if (p.all_inside && p.side_by_side) return load<Ints>(data + p.index.v[0]);
+    if (const int row = row_at(s, x, y); row >= 0) return load<Ints>(data + row);
+    const Place p = place_of(s, x, y);
     if (p.all_inside) return gather(data, p.index);
     if (!any_lane(p.inside)) return 0;
     return select(p.inside, gather(data, p.index), vint(0));
@@ -257,9 +265,10 @@ INLINE vec4 load_row(const std::byte* from) {
 /// One pixel per lane.
 template <class Pixel>
 INLINE vec4 fetch_pixels(const View& s, vint x, vint y) {
+    if (const int row = row_at(s, x, y); row >= 0)
+        return load_row<Pixel>(s.data + Pixel::bytes * size_t(row));
     const Place p = place_of(s, x, y);
     if (!any_lane(p.inside)) return vec4(vfloat(0.0f));
-    if (p.all_inside && p.side_by_side) return load_row<Pixel>(s.data + Pixel::bytes * size_t(p.index.v[0]));
     Floats4 pixels[lanes];
     for (int k = 0; k < lanes; ++k) pixels[k] = Pixel::read(s.data + Pixel::bytes * size_t(p.index.v[k]));
     const vec4 c = planar(pixels);
