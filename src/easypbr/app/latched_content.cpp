@@ -24,7 +24,8 @@ std::vector<LatchedContent::Placed> LatchedContent::placed(const SceneSnapshot& 
     std::vector<Placed> all;
     all.reserve(scene.objects.size());
     for (const SceneSnapshot::Object& object : scene.objects)
-        all.push_back({object.mesh->V.revision(), object.T_world_mesh.matrix()});
+        all.push_back({object.mesh->V.revision(), object.T_world_mesh.matrix(), object.half_voxel,
+                       object.point_radius});
     return all;
 }
 

@@ -29,6 +29,7 @@ class LatchedContent {
     struct Placed {
         uint64_t revision;  ///< of the vertices
         Eigen::Matrix4d T_world_mesh;
+        double half_voxel, point_radius;
         bool operator==(const Placed&) const = default;
     };
     static std::vector<Placed> placed(const SceneSnapshot& scene);

@@ -66,9 +66,20 @@ const char* type_name(FieldType type) {
     return names[size_t(type)];
 }
 
+/// Values that never change are their own copies.
+template <class T>
+void bind_copies(nb::class_<T>& type) {
+    const auto same = [](nb::handle self) { return nb::borrow(self); };
+    type.def("__copy__", same, nb::sig("def __copy__(self) -> Self"));
+    type.def(
+        "__deepcopy__", [](nb::handle self, nb::handle /*memo*/) { return nb::borrow(self); },
+        nb::arg("memo"), nb::sig("def __deepcopy__(self, memo: object) -> Self"));
+}
+
 void bind_automatic(nb::module_& module) {
-    nb::class_<Automatic>(module, "Automatic",
-                          "Value of a setting: inferred at the next image, then latched.")
+    nb::class_<Automatic> automatic(module, "Automatic",
+                                    "Value of a setting: inferred at the next image, then latched.");
+    automatic
         .def_prop_ro(
             "value",
             [](const Automatic& a) { return a.value ? data_to_python(*a.value, false) : nb::none(); },
@@ -79,12 +90,14 @@ void bind_automatic(nb::module_& module) {
             "__eq__", [](const Automatic&, nb::handle other) { return nb::isinstance<Automatic>(other); },
             nb::arg("other").none())
         .def("__hash__", [](const Automatic&) { return 1; });
-    nb::class_<Follow>(module, "Follow", "Value of a setting: inferred again for every image.")
-        .def("__repr__", [](const Follow&) { return "follow"; })
+    bind_copies(automatic);
+    nb::class_<Follow> follow(module, "Follow", "Value of a setting: inferred again for every image.");
+    follow.def("__repr__", [](const Follow&) { return "follow"; })
         .def(
             "__eq__", [](const Follow&, nb::handle other) { return nb::isinstance<Follow>(other); },
             nb::arg("other").none())
         .def("__hash__", [](const Follow&) { return 2; });
+    bind_copies(follow);
     module.attr("auto") = Automatic{};
     module.attr("follow") = Follow{};
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/mesh_data.h"
@@ -30,6 +31,9 @@ void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows);
 
 /// Gives a mesh the arrays, parts and sources of another; its name, materials, style, pose and children stay.
 void replace_arrays(MeshData& mesh, const MeshData& arrays);
+
+/// The revisions of all arrays that replace_arrays() gives a mesh, in one order.
+std::vector<uint64_t> array_revisions(const MeshData& mesh);
 
 /// A mesh without arrays, parts and sources, and otherwise the same.
 MeshData without_arrays(const MeshData& mesh);

@@ -193,11 +193,13 @@ Array1i flattened(const Array3i& F) {
     return Array1i(Array1i::Dense(Eigen::Map<const Array1i::Dense>(F.data(), F.size())));
 }
 
-/// The arrays that a drawing is made of. Materials are those of the object as it is drawn so far: a table of
-/// values has replaced them.
+/// All that a cached drawing replaces of an object, and so what it is valid for. Materials are those of the
+/// object as it is drawn so far: a table of values has replaced them.
 std::string arrays_of(const MeshData& mesh) {
-    return fmt::format("{} {} {} {} {}", mesh.V.revision(), mesh.F.revision(), mesh.C.revision(),
-                       mesh.UV.revision(), mesh.E.revision());
+    std::string key = fmt::format("{} {}", fmt::join(array_revisions(mesh), " "), mesh.voxel_size);
+    for (const MeshPart& part : mesh.parts)
+        key += fmt::format(" {}+{}:{}", part.first_face, part.face_count, part.material);
+    return key;
 }
 
 ColorMeaning meaning_of(const ColorPlan& plan) {
@@ -284,9 +286,7 @@ std::shared_ptr<const MeshData> DrawableCache::colored(const SceneSnapshot::Obje
                                                        const ColorPlan& plan, ElementSources& sources) {
     if (plan.source == ColorSource::material) return object.mesh;
     const MeshData& own = *object.mesh;
-    const std::string key =
-        fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key);
-    return get(key, own, sources, [&](Entry& entry) {
+    return get(fmt::format("{} {}", arrays_of(own), plan.key), own, sources, [&](Entry& entry) {
         MeshData made = with_colors(own, plan, entry.table);
         if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
         return made;

@@ -37,10 +37,9 @@ RayGround ray_ground(const ResolvedSettings& resolved) {
 
 }  // namespace
 
-void Pipeline::begin(Vec2i size, const ResolvedSettings& resolved) {
+void Pipeline::begin(Vec2i size) {
     gl::reset_state();
     if (targets_.size() != size) targets_ = GBuffer(size);
-    if (!resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
     timer_.reset();
     transfers_ = {};
 }
@@ -113,8 +112,11 @@ void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const
             update_ray_scene(frame, casters, contents.ground);
             if (!contents.paths && !casters.of(DrawMode::splats).empty()) ray_scene_.make_surfaces(resolved);
         });
+    // The target's being there says that it holds this frame's.
+    const bool occludes = resolved.settings.ssao.enabled && !contents.traced && !contents.paths;
+    if (!occludes) targets_.remove_ambient_occlusion();
     if (contents.paths) return trace_paths(frame, contents.tiles, inputs.native, caught);
-    if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, surfaces);
+    if (occludes) occlude(frame, inputs.native, surfaces);
     light(frame, targets_, contents, inputs, caught);
 }
 

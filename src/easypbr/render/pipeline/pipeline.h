@@ -51,7 +51,7 @@ class Pipeline {
           shadow_maps_(primitives_, transfers_) {}
 
     /// Makes the targets for a size and forgets the times of passes.
-    void begin(Vec2i size, const ResolvedSettings& resolved);
+    void begin(Vec2i size);
 
     /// Makes the maps of the environment that lights the scene.
     void prepare_environment(const ResolvedSettings& resolved);

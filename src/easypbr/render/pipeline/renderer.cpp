@@ -115,7 +115,7 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     picture_.reset();
     kept_.reset();
     has_layers_ = false;
-    pipeline_.begin(options.size, resolved);
+    pipeline_.begin(options.size);
     camera_ = resolved.camera;
     output_.begin(options.size, options.encoding);
     pipeline_.prepare_environment(resolved);
@@ -280,7 +280,7 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
                            const DrawOptions& options, const SettingsImages& images) {
     picture_.reset();
     kept_.reset();
-    pipeline_.begin(options.size, resolved);
+    pipeline_.begin(options.size);
     camera_ = resolved.camera;
     const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
     sources_ = drawable.sources;
@@ -300,7 +300,7 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
 void Renderer::draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
                              const SettingsImages& images) {
     picture_.reset();
-    pipeline_.begin(size, resolved);
+    pipeline_.begin(size);
     camera_ = resolved.camera;
     keep_surfaces(scene, resolved, size, images);
     draw_kept();

@@ -155,9 +155,18 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     std::vector<std::pair<Primitive*, const DrawItem*>> items;
     for (const auto& kind : primitives)
         for (const DrawItem& item : casters.of(kind->mode())) items.emplace_back(kind.get(), &item);
+    const auto reach_of = [&](const auto& of) {
+        const auto& [kind, item] = of;
+        return item->kind == SurfaceKind::lit ? float(kind->reach(*item) / unit_) : 0.0f;
+    };
     if (scene_ && generation == generation_) {
-        // The list may be another one of the same casters.
-        for (size_t i = 0; i < items.size(); ++i) scene_->elements[i]->item = items[i].second;
+        // The list may be another one of the same casters, which may be lit otherwise.
+        reach_ = 0;
+        for (size_t i = 0; i < items.size(); ++i) {
+            scene_->elements[i]->item = items[i].second;
+            scene_->reaches[i] = reach_of(items[i]);
+            reach_ = std::max(reach_, scene_->reaches[i]);
+        }
         return place_ground();
     }
     generation_ = generation;
@@ -169,8 +178,9 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     unit_ = bounds.diagonal().norm() / 2;
     place_ground();
     auto made = std::make_unique<Scene>(centre_, unit_);  // kept once all is there: it can be interrupted
-    for (const auto& [kind, item] : items) {
-        const float reach = item->kind == SurfaceKind::lit ? float(kind->reach(*item) / unit_) : 0;
+    for (const auto& each : items) {
+        const auto& [kind, item] = each;
+        const float reach = reach_of(each);
         reach_ = std::max(reach_, reach);
         kind->add_to(*made, *item);
         made->kinds.resize(made->elements.size(), kind);
