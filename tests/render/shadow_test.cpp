@@ -212,5 +212,24 @@ TEST(Shadow, PenumbraOfAKnifeEdge) {
             }
 }
 
+// A lamp 2 above a floor of half size 50, whose automatic radius would be 3.5: nothing hides any of it.
+// 0.001: as NoAcneOnAPlane.
+TEST(Shadow, AutomaticEmittersLightTheFloorBelowThem) {
+    Scene scene;
+    scene.show(rectangle(-50, -50, 50, 50, 0), "floor");
+    Light lamp = point(Vec3(0, 0, 2));
+    lamp.radius = {};
+    scene.set_light("lamp", lamp);
+    for (const int samples : {1, 16}) {
+        app::Session session = shadow_session(scene, ShadowMode::soft);
+        look_from(session, Vec3d(0, -1, 10), 20);
+        const LitParts lit = lit_parts(session, samples);
+        float least = 1;
+        for (const float part : lit.parts.pixels<float>())
+            if (part >= 0) least = std::min(least, part);
+        EXPECT_GT(least, 0.999f) << samples;
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::shadow_test

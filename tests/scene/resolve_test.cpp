@@ -358,6 +358,52 @@ TEST(Resolve, RefusesContradictions) {
     EXPECT_THROW(resolve(scene, {}, Vec2i(800, max_image_side + 1)), ArgumentError);
 }
 
+/// A square in the plane z = 0, of half size s.
+Mesh floor_of(float s) {
+    Array3f::Dense V(4, 3);
+    V << -s, -s, 0, s, -s, 0, s, s, 0, -s, s, 0;
+    Array3i::Dense F(2, 3);
+    F << 0, 1, 2, 0, 2, 3;
+    return {Array3f(std::move(V)), Array3i(std::move(F))};
+}
+
+float inferred_radius(const Mesh& mesh, const Light& light) {
+    SceneSnapshot scene = scene_of(mesh);
+    scene.lights["lamp"] = light;
+    return resolve(scene, unlit(), size).light_radii.at("lamp");
+}
+
+// The radius of a square of half size s is s sqrt 2: a light gets 0.05 of it. Points and spots get half of
+// the way to the surface at most, which is far from all vertices here.
+TEST(Resolve, EmittersDoNotReachThroughSurfaces) {
+    Light lamp;
+    lamp.position = Vec3d(0, 0, 2);
+    EXPECT_FLOAT_EQ(inferred_radius(floor_of(10), lamp), float(0.5 * std::sqrt(2.0)));
+    EXPECT_FLOAT_EQ(inferred_radius(floor_of(50), lamp), 1);
+    EXPECT_FLOAT_EQ(inferred_radius(floor_of(500), lamp), 1);
+    lamp.type = LightType::spot;
+    EXPECT_FLOAT_EQ(inferred_radius(floor_of(500), lamp), 1);
+    lamp.position.z() = -0.5;
+    EXPECT_FLOAT_EQ(inferred_radius(floor_of(500), lamp), 0.25);
+    lamp.position.z() = 0;
+    EXPECT_EQ(inferred_radius(floor_of(500), lamp), 0);
+    // An area light may hang in a ceiling.
+    lamp.type = LightType::disc;
+    EXPECT_FLOAT_EQ(inferred_radius(floor_of(500), lamp), float(25 * std::sqrt(2.0)));
+}
+
+// The nearest vertex of 20 000, behind others in order, turned and shifted: 3 from the light.
+TEST(Resolve, EmittersKeepClearOfPoints) {
+    Array3f::Dense V = Array3f::Dense::Zero(20000, 3);
+    for (Eigen::Index i = 0; i < V.rows(); ++i) V(i, 0) = 100 + float(i) / 100;
+    V.row(15000).setZero();
+    Mesh mesh = cloud(V);
+    mesh.set_T_parent_mesh(Eigen::Translation3d(5, 0, 0) * Eigen::AngleAxisd(1, Vec3d::UnitZ()));
+    Light lamp;
+    lamp.position = Vec3d(5, 0, 3);
+    EXPECT_FLOAT_EQ(inferred_radius(mesh, lamp), 1.5);
+}
+
 TEST(Resolve, NeedsContentOnlyToPlaceTheCamera) {
     try {
         resolve(SceneSnapshot{}, {}, size);

@@ -45,7 +45,8 @@ struct LightSource {
 /// A light of a scene.
 struct Light : LightSource {
     /// World units. Point and spot: of the spherical emitter, which sets the size of penumbrae; 0: a point.
-    /// Disc and sphere: of the light. Automatic: 0.05 of the content's radius.
+    /// Disc and sphere: of the light. Automatic: 0.05 of the content's radius; of points and spots half of
+    /// the distance to the nearest surface at most.
     Auto<float> radius;
 
     bool operator==(const Light& other) const;

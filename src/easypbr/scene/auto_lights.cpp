@@ -23,8 +23,8 @@ constexpr Placement fill_placement{45, 20, 0.5};
 constexpr Placement rim_placement{145, 45, 1.6};
 /// Distance of the lights in radii of the content.
 constexpr double light_distance = 3;
-/// Radius of the studio's lights and of a light that says nothing, in radii of the content.
-constexpr double studio_light_part = 0.3, plain_light_part = 0.05;
+/// Radius of the lights, in radii of the content.
+constexpr double studio_light_part = 0.3;
 
 constexpr int meter_directions = 64;
 const Vec3d luminance_weights(0.2126, 0.7152, 0.0722);
@@ -69,10 +69,6 @@ Vec3d meter_normal(int k) {
 }
 
 }  // namespace
-
-float plain_light_radius(const Content& content) {
-    return float(plain_light_part * content.radius());
-}
 
 std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,
                                                  bool key_by_default, LightsSettings& settings,

@@ -101,8 +101,9 @@ constexpr double near_plane(double nearest, double distance) {
 /// content.
 double ground_below(const Box3d& content, const Vec3d& up);
 
-/// The radius of a point or spot light of the scene that names none.
-float plain_light_radius(const Content& content);
+/// The radii of lights of the scene that name none: the same part of the content for all, less where points
+/// and spots are near a surface, which the emitter must not reach through.
+std::vector<float> plain_light_radii(const Content& content, const std::vector<Light>& lights);
 
 /// Key, fill and rim as far as they are on: automatic ones are off but for the key, by `key_by_default`.
 std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,

@@ -62,8 +62,8 @@ std::vector<LightField> all_rows() {
         row("casts_shadows", &Light::casts_shadows, "Enables the shadows of this light."),
         row("radius", &Light::radius,
             "Point and spot: radius of the spherical emitter, which sets the size of penumbrae. Disc and "
-            "sphere: "
-            "radius of the light. Automatic: 0.05 of the content's radius.",
+            "sphere: radius of the light. Automatic: 0.05 of the content's radius; of points and spots "
+            "half of the distance to the nearest surface at most.",
             round, "world units", from_zero),
         row("angular_radius_deg", &Light::angular_radius_deg,
             "Directional: angular radius of the emitter; default: that of the sun.", directional, "degrees",

@@ -59,13 +59,31 @@ void resolve_sun(const SceneSnapshot& scene, EnvironmentSettings& settings, Reso
     resolved.lights.push_back(light);
 }
 
-void resolve_lights(const detail::Content& content, Settings& settings, ResolvedSettings& resolved) {
+/// Whether a light's radius counts, and nobody has said or inferred it.
+bool lacks_radius(const Light& light) {
+    const bool is_round = light.type != LightType::directional && light.type != LightType::rectangle;
+    return is_round && !light.radius.value();
+}
+
+std::map<std::string, float> inferred_radii(const detail::Content& content) {
+    std::vector<std::string> names;
+    std::vector<Light> lights;
     for (const auto& [name, light] : content.scene().lights) {
-        validate(light, name);
+        if (!light.enabled || !lacks_radius(light)) continue;
+        names.push_back(name);
+        lights.push_back(light);
+    }
+    const std::vector<float> radii = detail::plain_light_radii(content, lights);
+    std::map<std::string, float> inferred;
+    for (size_t i = 0; i < names.size(); ++i) inferred[names[i]] = radii[i];
+    return inferred;
+}
+
+void resolve_lights(const detail::Content& content, Settings& settings, ResolvedSettings& resolved) {
+    for (const auto& [name, light] : content.scene().lights) validate(light, name);
+    resolved.light_radii = inferred_radii(content);
+    for (const auto& [name, light] : content.scene().lights) {
         if (!light.enabled) continue;
-        if (light.type != LightType::directional && light.type != LightType::rectangle &&
-            !light.radius.value())
-            resolved.light_radii[name] = detail::plain_light_radius(content);
         const auto inferred = resolved.light_radii.find(name);
         resolved.lights.push_back(
             {light, inferred != resolved.light_radii.end() ? inferred->second : light.radius.value_or(0)});
