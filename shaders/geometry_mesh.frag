@@ -27,6 +27,15 @@ void write_extension(Normals n, vec3 decoded, out uvec4 first, out uvec4 second)
 #endif
 #include "geometry_shader.glsl"
 
+// Of base_color(), without blur.
+float exact_opacity() {
+    float opacity = u_base_color.w;
+    if (has_vertex_colors) opacity *= v_color.a;
+    if (has_base_color_texture) opacity *= textureLod(u_base_color_texture, uv_of(0), 0.0).a;
+    if (has_opacity_texture) opacity *= dot(textureLod(u_opacity_texture, uv_of(6), 0.0), u_opacity_channel);
+    return opacity;
+}
+
 void discard_clear(float alpha) {
     if (has_alpha_mask && alpha < u_surface.w) discard;
     if (!has_alpha_mask && has_stochastic_alpha && alpha <= alpha_threshold()) discard;
@@ -35,6 +44,7 @@ void discard_clear(float alpha) {
 
 void main() {
     vec4 color = base_color();
+    if (has_alpha_mask && u_exact_mask > 0.5) color.a = exact_opacity();
     if (!has_own_shader) discard_clear(color.a);
     vec3 parameters = read_parameters();
     float metallic = parameters.x, roughness = parameters.y, occlusion = parameters.z;

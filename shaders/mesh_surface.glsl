@@ -26,6 +26,7 @@ uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cu
 uniform vec4 u_emissive;    // radiance; w: code of the surface's kind
 uniform float u_normal_scale;
 uniform float u_lod_bias;
+uniform float u_exact_mask;  // 1: the mask is tested on the texels of the largest level
 uniform vec3 u_up;  // world
 
 uniform mat3 u_uv_transform[UV_TRANSFORMS];

@@ -163,6 +163,8 @@ inline void alpha_by(const VisibleTriangles& t, const VisiblePixel* pixels, int 
     for (int first = 0; first < count; first += lanes, pixels += lanes) {
         const VisibleLanes seen(t, pixels, count - first);
         if (s.has_uv) set_uv(s, t, pixels, seen);
+        // A pixel without extent sees the largest level.
+        if (s.u_exact_mask > 0.5f) s.v_uv_dx = s.v_uv_dy = vec2(vfloat(0.0f), vfloat(0.0f));
         if (s.has_vertex_colors) set_color(s, t, pixels, seen);
         const vfloat found = s.base_color().w;
         for (int k = 0; k < seen.used; ++k) alpha[first + k] = found.v[k];

@@ -133,6 +133,10 @@ ShaderInputs material_inputs(const MaterialContext& context, const DrawItem& ite
     values.set("u_normal_scale", m.normal_scale);
     // Jittered frames see finer detail together than one alone: a level less of blur from four samples on.
     values.set("u_lod_bias", context.sample_count >= 4 ? -1.0f : 0.0f);
+    // The mean of what a mask leaves of jittered samples is its coverage; a blurred one leaves all or
+    // nothing.
+    const bool averages_mask = item.alpha == AlphaMode::mask && context.sample_count > 1;
+    values.set("u_exact_mask", averages_mask ? 1.0f : 0.0f);
     if (is_extended(context, item)) set_extensions(values, *context.resolved, item);
     for_each_texture(context, item, [&](const TextureUse& use, size_t index) {
         const Texture& texture = m.*use.row.texture;

@@ -1,0 +1,55 @@
+// Cut-outs that are smaller than a pixel.
+#include <cmath>
+#include <memory>
+
+#include "render_test.h"
+
+namespace easypbr::mask_test {
+namespace {
+
+/// Opaque squares of `side` texels, one in each 8 x 8, `tiles` times 8 of them along a side.
+Material squares(int side, float tiles) {
+    auto image = std::make_shared<Image>(64, 64, 4, PixelType::u8);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 4; ++c)
+                image->at<uint8_t>(x, y)[c] = c < 3 || (x % 8 < side && y % 8 < side) ? 255 : 0;
+    Material m;
+    m.base_color_texture.image = image;
+    m.base_color_texture.uv_transform.diagonal() << tiles, tiles, 1;
+    m.alpha_mode = AlphaMode::mask;
+    m.unlit = true;
+    return m;
+}
+
+// Between texels opacity is bilinear, so that a square of k texels is cut at its corners by uv = 1/2, u and v
+// from 0 to 1 across the corner: what is left of the 64 texels is (k - 1)^2 + 2 (k - 1) + 4 (1 - log(2)) / 2.
+double coverage_of(int side) {
+    const double inner = side - 1;
+    return (inner * inner + 2 * inner + 2 * (1 - std::log(2.0))) / 64;
+}
+
+}  // namespace
+
+// A pixel holds two squares in each direction, and a little more, so that pixels see all of a square. 0.02:
+// of 64 samples in each of 576 pixels three standard deviations are 0.008, but pixels share their jitter.
+TEST(Mask, MeanOfSamplesIsTheCoverage) {
+    for (const bool paths : {false, true})
+        for (const int side : {4, 6}) {
+            Scene scene;
+            scene.show(facing_square(1, squares(side, 8.37f)), "square");
+            app::Session session = plain_session(scene, 32);
+            Settings& s = session.settings();
+            s.path.enabled = paths;
+            s.camera.projection = Projection::orthographic;
+            s.camera.ortho_height = 2.0;
+            look_from(session, Vec3d(0, 0, 3));
+            const Image picture = render_linear(session, 64);
+            double sum = 0;
+            for (int y = 4; y < 28; ++y)
+                for (int x = 4; x < 28; ++x) sum += double(picture.at<float>(x, y)[3]);
+            EXPECT_NEAR(sum / (24 * 24), coverage_of(side), 0.02) << "side " << side << ", paths " << paths;
+        }
+}
+
+}  // namespace easypbr::mask_test
