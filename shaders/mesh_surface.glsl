@@ -99,7 +99,9 @@ Normals read_normals() {
     float side = 1.0;
     vec3 face = vec3(0.0);
     if (sees_by_faces) face = seen_face();
-    n.geometric = is_flat ? face : normalize(v_normal);
+    // Seen from behind, the frame is that of the front turned over, whatever the normals are.
+    if (is_flat) side = gl_FrontFacing ? 1.0 : -1.0;
+    n.geometric = is_flat ? face * side : normalize(v_normal);
     if (!is_flat && sees_by_faces) side = dot(n.geometric, face) < 0.0 ? -1.0 : 1.0;
     if (!is_flat && !sees_by_faces && is_two_sided) side = gl_FrontFacing ? 1.0 : -1.0;
     if (has_tangents) {

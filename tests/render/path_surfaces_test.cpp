@@ -111,7 +111,13 @@ TEST(PathSurfaces, LampsOnMappedNormals) {
         shine(scene, Vec3(0, 0, -1));
         app::Session session = path_session(scene, 8);
         look_from(session, Vec3d(0, 0, 4), 10);
-        EXPECT_NEAR(render_linear(session, 16).at<float>(4, 4)[0], 0.8 * std::cos(tilt), 0.01);
+        for (const bool flat : {false, true}) {
+            session.settings().style.flat = flat;
+            EXPECT_NEAR(render_linear(session, 16).at<float>(4, 4)[0], 0.8 * std::cos(tilt), 0.01) << flat;
+            const Image layer = session.render_layers({"normal_world"}).at("normal_world");
+            const Vec3 wanted(float(std::sin(tilt)), 0, float(std::cos(tilt)));
+            EXPECT_LT((Vec3(layer.at<float>(4, 4)) - wanted).norm(), 0.01f) << flat;
+        }
     }
 }
 

@@ -150,12 +150,11 @@ double DrawItem::scale() const {
 
 bool DrawItem::needs_tangents() const {
     if (mesh().UV.empty()) return false;
-    const bool mapped = material.normal_texture || material.clearcoat_normal_texture;
-    return (mapped && !style.flat) || material.anisotropy > 0;
+    return material.normal_texture || material.clearcoat_normal_texture || material.anisotropy > 0;
 }
 
 bool DrawItem::has_mapped_normals() const {
-    return (material.normal_texture && !style.flat && !mesh().UV.empty()) || material.shader;
+    return (material.normal_texture && !mesh().UV.empty()) || material.shader;
 }
 
 ExtensionSet DrawList::extensions() const {

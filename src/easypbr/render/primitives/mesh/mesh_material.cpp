@@ -60,10 +60,7 @@ void for_each_texture(const MaterialContext& context, const DrawItem& item, Visi
     for (size_t i = 0; i < count; ++i) {
         const TextureUse& use = texture_uses()[i];
         const Texture Material::*texture = use.row.texture;
-        const bool of_normals =
-            texture == &Material::normal_texture || texture == &Material::clearcoat_normal_texture;
-        const bool is_unread = (of_normals && item.style.flat) ||
-                               (texture == &Material::occlusion_texture && !context.occlusion);
+        const bool is_unread = texture == &Material::occlusion_texture && !context.occlusion;
         if ((item.material.*texture) && !is_unread) visit(use, i);
     }
 }
