@@ -11,8 +11,7 @@ vec3 arriving(Light light, vec3 position, out vec3 l) {
     float falloff = 1.0;
     if (light.position.w > 0.5) {
         float reached = d2 * light.color.w;  // Squared alone, d2 leaves single precision.
-        float window = clamp(1.0 - reached * reached, 0.0, 1.0);
-        falloff = window * window / max(d2, 1e-30);
+        falloff = clamp(1.0 - reached * reached, 0.0, 1.0) / max(d2, 1e-30);
     }
     if (light.position.w > 1.5) {
         float cone = clamp(-dot(l, light.direction.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);

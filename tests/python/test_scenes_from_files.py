@@ -38,6 +38,14 @@ def test_lights_of_a_file_are_drawn(tmp_path):
     picture = easypbr.render(tmp_path / "lit.gltf", **common)
     # Lambert: albedo I / (pi d^2), seen along the normal.
     assert picture[16, 16, 0] == pytest.approx(8 / (np.pi * 4), rel=0.005)
+    content = json.loads((tmp_path / "lit.gltf").read_text())
+    content["extensions"]["KHR_lights_punctual"]["lights"][0]["range"] = 3
+    (tmp_path / "lit.gltf").write_text(json.dumps(content))
+    for path in (False, True):
+        common["settings"].update({"path.enabled": path, "ground.mode": "none"})
+        picture = easypbr.render(tmp_path / "lit.gltf", **common)
+        # KHR_lights_punctual: times 1 - (d / range)^4. Nothing else sends light to the square.
+        assert picture[16, 16, 0] == pytest.approx(8 / (np.pi * 4) * (1 - (2 / 3) ** 4), rel=0.005)
 
 
 def test_material_variants_are_chosen_by_name(tmp_path):

@@ -43,10 +43,7 @@ inline double falloff(const ResolvedLight& light, const Vec3d& from_light, doubl
         return emitting_area(light) * std::max(cosine, 0.0) / (squared + emitting_area(light) / pi);
     }
     double factor = 1 / squared;
-    if (light.range > 0) {
-        const double window = std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
-        factor *= window * window;
-    }
+    if (light.range > 0) factor *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
     if (light.type == LightType::spot) {
         const double inner = std::cos(radians(light.inner_cone_deg)),
                      outer = std::cos(radians(light.outer_cone_deg));
