@@ -31,6 +31,10 @@ vec3 unpack_reflectance(uint bits) {
 const float greatest_dispersion = 40.0;
 const float full_turn = 6.28318530717958648;
 
+// Indices of refraction from 1 to 16 in 8 bits, in steps of 0.0035 at 1.3, 0.0066 at 1.5 and 0.03 at 2.4.
+float pack_ior(float ior) { return min(1.0 - 1.0 / (ior * ior), 254.0 / 255.0); }
+float unpack_ior(float code) { return inversesqrt(max(1.0 - code, 1.0 / 255.0)); }
+
 // `normal` is the one that a reader of the G-buffer decodes.
 void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second) {
     vec3 b1, b2;
@@ -42,7 +46,7 @@ void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second)
     first.w = packUnorm2x16(vec2(angle, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, sqrt(e.dispersion / greatest_dispersion), e.f90));
     second.x = pack_reflectance(e.f0);
     second.y = packHalf2x16(vec2(e.film_thickness, 0.0)) |
-               packUnorm4x8(vec4(0.0, 0.0, (e.film_ior - 1.0) * 0.5, (e.ior - 1.0) * 0.5));
+               packUnorm4x8(vec4(0.0, 0.0, pack_ior(e.film_ior), pack_ior(e.ior)));
     second.z = floatBitsToUint(e.thickness);
     second.w = packUnorm4x8(vec4(sqrt(e.transmittance), e.transmission));
 }
@@ -68,8 +72,8 @@ Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
     e.f0 = unpack_reflectance(second.x);
     e.film_thickness = unpackHalf2x16(second.y).x;
     v = unpackUnorm4x8(second.y);
-    e.film_ior = v.z * 2.0 + 1.0;
-    e.ior = v.w * 2.0 + 1.0;
+    e.film_ior = unpack_ior(v.z);
+    e.ior = unpack_ior(v.w);
     e.thickness = uintBitsToFloat(second.z);
     v = unpackUnorm4x8(second.w);
     e.transmittance = v.rgb * v.rgb;
