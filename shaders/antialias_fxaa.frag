@@ -3,8 +3,9 @@
 #include "common_surface_kind.glsl"
 
 #feature EXACT has_exact_colors
+#feature ALPHA has_alpha  // the picture's background is transparent
 
-uniform sampler2D u_color;  // sRGB-encoded, linear filtering
+uniform sampler2D u_color;  // sRGB-encoded, straight alpha, linear filtering
 uniform vec2 u_size;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
@@ -21,6 +22,16 @@ float luma_of(vec4 c) { return dot(c.rgb, luma_weights) * c.a; }
 
 vec4 premultiplied(vec4 c) { return vec4(c.rgb * c.a, c.a); }
 
+/// Linearly filtered and premultiplied. The colour of a transparent texel has no weight.
+vec4 filtered(vec2 uv) {
+    if (!has_alpha) return premultiplied(textureLod(u_color, uv, 0.0));
+    vec2 at = uv * u_size - 0.5, corner = floor(at), part = at - corner;
+    ivec2 p = ivec2(corner);
+    vec4 top = mix(premultiplied(texel_at(p)), premultiplied(texel_at(p + ivec2(1, 0))), part.x);
+    vec4 bottom = mix(premultiplied(texel_at(p + ivec2(0, 1))), premultiplied(texel_at(p + 1)), part.x);
+    return mix(top, bottom, part.y);
+}
+
 bool touches_exact(vec2 uv) {
     vec4 kinds = textureGather(u_material, uv, 3), depths = textureGather(u_depth_target, uv, 0);
     return (is_exact(kinds.x) && depths.x > 0.0) || (is_exact(kinds.y) && depths.y > 0.0) ||
@@ -29,9 +40,17 @@ bool touches_exact(vec2 uv) {
 
 /// What is blurred: the pixel itself in place of a table's colours, which nothing may mix with.
 vec4 sample_at(vec2 uv, vec4 centre) {
-    vec4 color = textureLod(u_color, uv, 0.0);
-    if (has_exact_colors) color = touches_exact(uv) ? centre : color;
-    return premultiplied(color);
+    vec4 color = filtered(uv);
+    if (has_exact_colors) color = touches_exact(uv) ? premultiplied(centre) : color;
+    return color;
+}
+
+float lowest(vec4 corners, float middle) {
+    return min(middle, min(min(corners.x, corners.y), min(corners.z, corners.w)));
+}
+
+float highest(vec4 corners, float middle) {
+    return max(middle, max(max(corners.x, corners.y), max(corners.z, corners.w)));
 }
 
 void main() {
@@ -39,21 +58,32 @@ void main() {
     vec2 uv = gl_FragCoord.xy * texel;
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 centre = texel_at(p);
-    float m = luma_of(centre);
-    float nw = luma_of(texel_at(p - 1)), ne = luma_of(texel_at(p + ivec2(1, -1)));
-    float sw = luma_of(texel_at(p + ivec2(-1, 1))), se = luma_of(texel_at(p + 1));
-    float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
+    vec4 nw = texel_at(p - 1), ne = texel_at(p + ivec2(1, -1)), sw = texel_at(p + ivec2(-1, 1)), se = texel_at(p + 1);
+    // Edges are those of luma, or of alpha where it changes more: black on a transparent background has no luma.
+    vec4 weights = vec4(luma_weights, 0.0);
+    vec4 corners = vec4(luma_of(nw), luma_of(ne), luma_of(sw), luma_of(se));
+    float middle = luma_of(centre);
+    if (has_alpha) {
+        vec4 alphas = vec4(nw.a, ne.a, sw.a, se.a);
+        bool by_alpha = highest(alphas, centre.a) - lowest(alphas, centre.a) >
+                        highest(corners, middle) - lowest(corners, middle);
+        weights = by_alpha ? vec4(0.0, 0.0, 0.0, 1.0) : weights;
+        corners = by_alpha ? alphas : corners;
+        middle = by_alpha ? centre.a : middle;
+    }
+    float low = lowest(corners, middle), high = highest(corners, middle);
     bool edge = high - low > max(1.0 / 16.0, high * 0.125);
     o_color = centre;
     if (!any_lane(edge)) return;
 
-    vec2 along = vec2(sw + se - nw - ne, nw + sw - ne - se);
-    float reduce = max((nw + ne + sw + se) * 0.03125, 1.0 / 128.0);
+    // corners: x y at the top, z w at the bottom
+    vec2 along = vec2(corners.z + corners.w - corners.x - corners.y, corners.x + corners.z - corners.y - corners.w);
+    float reduce = max((corners.x + corners.y + corners.z + corners.w) * 0.03125, 1.0 / 128.0);
     along = clamp(along / (min(abs(along.x), abs(along.y)) + reduce), -span, span) * texel;
 
     vec4 near = 0.5 * (sample_at(uv - along / 6.0, centre) + sample_at(uv + along / 6.0, centre));
     vec4 wide = 0.5 * near + 0.25 * (sample_at(uv - along * 0.5, centre) + sample_at(uv + along * 0.5, centre));
-    float wide_luma = dot(wide.rgb, luma_weights);
-    vec4 blurred = wide_luma < low || wide_luma > high ? near : wide;
-    o_color = edge ? vec4(blurred.rgb / max(blurred.a, 1e-4), blurred.a) : centre;
+    float measure = dot(wide, weights);
+    vec4 blurred = measure < low || measure > high ? near : wide;
+    o_color = edge ? vec4(blurred.rgb / max(blurred.a, 1e-6), blurred.a) : centre;
 }

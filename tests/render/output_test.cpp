@@ -201,6 +201,32 @@ TEST(Output, FxaaSmoothsEdgesOnly) {
     EXPECT_EQ(std::vector<int>(p, p + 4), std::vector<int>(q, q + 4));
 }
 
+// FXAA before a transparent background: the outline is covered in part, in the object's own colour.
+TEST(Output, FxaaSmoothsTransparentEdges) {
+    for (const bool native : {true, false})
+        for (const int code : {255, 0}) {
+            Material material;
+            material.base_color = Vec3::Zero();
+            material.emissive = Vec3::Constant(float(code) / 255);
+            Mesh sphere = make_sphere();
+            sphere.set_material(material);
+            Scene scene;
+            scene.show(sphere, "sphere");
+            app::Session session = plain_session(scene);
+            session.allow_native_shading(native);
+            session.settings().image.antialias = Antialias::fxaa;
+            const Image image = session.render();
+            size_t partly = 0, off = 0;
+            for (int i = 0; i < int(image.pixel_count()); ++i) {
+                const uint8_t* p = &image.pixels<uint8_t>()[size_t(i) * 4];
+                partly += p[3] > 0 && p[3] < 255;
+                off += p[3] > 0 && (p[0] != code || p[1] != code || p[2] != code);
+            }
+            EXPECT_GT(partly, 50u) << code << ", native " << native;  // the outline has about 180 pixels
+            EXPECT_EQ(off, 0u) << code << ", native " << native;
+        }
+}
+
 TEST(Output, RefusesSizesThatCannotBe) {
     Scene scene;
     scene.show(make_sphere(), "sphere");

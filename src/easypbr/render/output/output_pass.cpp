@@ -331,6 +331,7 @@ ShaderInputs OutputPass::edge_inputs(const Frame& frame, const GBuffer* exact) c
     ShaderInputs values;
     values.set("u_size", Vec2(frame.size.cast<float>()));
     values.set("u_color", aliased_);
+    if (frame.resolved->settings.background.mode == BackgroundMode::transparent) values.define("ALPHA");
     if (!exact) return values;
     values.define("EXACT");
     values.set("u_material", exact->material);
