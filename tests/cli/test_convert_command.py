@@ -3,6 +3,8 @@ import json
 
 import pytest
 
+import png
+
 
 def info(easypbr, file):
     return json.loads(easypbr("info", "--json", file).stdout)
@@ -138,3 +140,16 @@ def test_steps_are_for_meshes(easypbr, sphere, render, tmp_path):
     render(sphere, "-o", "picture.png")
     assert "--decimate is for meshes" in easypbr("convert", "picture.png", "out.png", "--decimate", "5", code=2).stderr
     assert not (tmp_path / "out.png").exists()
+
+
+# Light of 2 before a transparent background: code 255 wherever anything is covered.
+def test_alpha_is_straight_in_png_and_premultiplied_in_exr(easypbr, render, sphere, tmp_path):
+    render(sphere, "-o", "a.exr", "--mode", "raster", "--background", "transparent", "--ground", "none", "--samples", "4",
+           "--set", "material.emissive=2,2,2")  # fmt: skip
+    easypbr("convert", "a.exr", "a.png")
+    picture = png.read(tmp_path / "a.png")
+    covered = picture[..., 3] > 0
+    assert ((picture[..., 3] > 0) & (picture[..., 3] < 255)).any() and (picture[covered][:, :3] == 255).all()
+    assert "HDR has no transparency" in easypbr("convert", "a.exr", "a.hdr", code=1).stderr
+    assert "JPEG has no transparency" in easypbr("convert", "a.png", "a.jpg", code=1).stderr
+    assert not (tmp_path / "a.hdr").exists() and not (tmp_path / "a.jpg").exists()

@@ -53,6 +53,29 @@ TEST(Image, EncodesColorAndLeavesAlphaLinear) {
     EXPECT_EQ(values_of<uint8_t>(to_u8(nothing)), (std::vector<uint8_t>{0}));
 }
 
+// Half of the red (0.25, 0, 0) is (0.125, 0, 0, 0.5) in floats, and code 137 (255 * 0.53710) straight.
+TEST(Image, PicturesOfFloatsArePremultiplied) {
+    const Image picture = image_of<float>(2, 1, 4, PixelType::f32, {0.125f, 0, 0, 0.5f, 0.5f, 0, 0, 0});
+    EXPECT_EQ(values_of<uint8_t>(picture_to_u8(picture)), (std::vector<uint8_t>{137, 0, 0, 128, 0, 0, 0, 0}));
+    const Image texture = image_of<float>(1, 1, 4, PixelType::f32, {0.25f, 0, 0, 0.5f});
+    EXPECT_EQ(values_of<uint8_t>(to_u8(texture)), (std::vector<uint8_t>{137, 0, 0, 128}));
+    const Image codes = image_of<uint8_t>(1, 1, 2, PixelType::u8, {255, 51});
+    EXPECT_EQ(values_of<float>(picture_to_linear_f32(codes)), (std::vector<float>{0.2f, 0.2f}));
+    EXPECT_EQ(values_of<float>(picture_to_linear_f32(picture)), values_of<float>(picture));
+    const Image color = image_of<float>(1, 1, 3, PixelType::f32, {0.5f, 1, 0});
+    EXPECT_EQ(values_of<float>(premultiplied(color)), values_of<float>(color));
+    EXPECT_EQ(values_of<float>(unpremultiplied(color)), values_of<float>(color));
+}
+
+TEST(Image, TellsWhetherSomethingShinesThrough) {
+    EXPECT_TRUE(is_opaque(image_of<uint8_t>(1, 1, 3, PixelType::u8, {1, 2, 3})));
+    EXPECT_TRUE(is_opaque(image_of<uint8_t>(2, 1, 2, PixelType::u8, {1, 255, 3, 255})));
+    EXPECT_FALSE(is_opaque(image_of<uint8_t>(2, 1, 2, PixelType::u8, {1, 255, 3, 254})));
+    EXPECT_FALSE(is_opaque(image_of<uint16_t>(1, 1, 2, PixelType::u16, {1, 65534})));
+    EXPECT_TRUE(is_opaque(image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.9999f})));
+    EXPECT_FALSE(is_opaque(image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.99f})));
+}
+
 TEST(Image, SurvivesTheWayToLinearAndBack) {
     Image codes(256, 1, 2, PixelType::u8);
     for (int i = 0; i < 256; ++i) codes.at<uint8_t>(i, 0)[0] = codes.at<uint8_t>(i, 0)[1] = uint8_t(i);

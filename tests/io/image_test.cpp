@@ -353,6 +353,33 @@ TEST(ImageFiles, RefusesALyingPngHeader) {
     EXPECT_THROW(io::decode_image(bytes, "x"), FormatError);
 }
 
+// Half covered, colour 1: 1 in codes, 0.5 in floats. 128 / 255 is what 8 bits make of one half.
+TEST(ImageFiles, ConvertAlphaBetweenStraightAndPremultiplied) {
+    const TemporaryFolder folder;
+    Image linear(1, 1, 4, PixelType::f32);
+    std::ranges::fill(linear.pixels<float>(), 0.5f);
+    io::save_image(linear, folder / "a.png");
+    const Image png = io::load_image(folder / "a.png");
+    const auto codes = png.pixels<uint8_t>();
+    EXPECT_EQ(std::vector<int>(codes.begin(), codes.end()), (std::vector<int>{255, 255, 255, 128}));
+    io::save_image(png, folder / "a.exr");
+    const Image exr = io::load_image(folder / "a.exr");
+    for (const float value : exr.pixels<float>()) EXPECT_EQ(value, 128 / 255.0f);
+}
+
+TEST(ImageFiles, RefusesTransparencyWhereThereIsNoAlpha) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.jpg", "a.jpeg", "a.hdr"}) {
+        for (const PixelType type : {PixelType::u8, PixelType::u16, PixelType::f32})
+            EXPECT_THROW(io::save_image(Image(2, 2, 4, type), folder / name), ArgumentError) << name;
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << name;
+    }
+    Image opaque(2, 2, 4, PixelType::u8);
+    std::ranges::fill(opaque.pixels<uint8_t>(), uint8_t(255));
+    EXPECT_NO_THROW(io::save_image(opaque, folder / "a.jpg"));
+    EXPECT_NO_THROW(io::save_image(opaque, folder / "a.hdr"));
+}
+
 TEST(ImageFiles, RefusesWhatItCannotWrite) {
     const TemporaryFolder folder;
     const Image image = noise(2, 2, 3, PixelType::u8);

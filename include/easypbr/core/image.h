@@ -104,6 +104,21 @@ Image to_u8(const Image& image);
 /// scaled only.
 Image to_linear_f32(const Image& image);
 
+/// Whether nothing shines through: there is no alpha, or it is 1 everywhere (f32: rounds to it in 8 bits).
+bool is_opaque(const Image& image);
+
+/// f32 colour that is premultiplied by alpha (2nd or 4th channel), as pictures hold it, divided by alpha; 0
+/// where alpha is 0. Throws ArgumentError unless the pixels are f32.
+Image unpremultiplied(const Image& image);
+/// The reverse.
+Image premultiplied(const Image& image);
+
+/// to_u8() of a picture: f32 pictures hold premultiplied colour, u8 and u16 ones straight colour. Textures
+/// hold straight colour whatever their type: to_u8().
+Image picture_to_u8(const Image& picture);
+/// to_linear_f32() of a picture, premultiplied.
+Image picture_to_linear_f32(const Image& picture);
+
 /// Puts 0 where a value of an f32 image is NaN or infinite; returns how many there were.
 size_t replace_non_finite(Image& image);
 

@@ -88,7 +88,7 @@ void LiveDrawing::record(const LiveScreens& screens) {
         if (wish == LiveWishes::Recording::stop) return stop_recording();
         if (!recording_.is_running()) return;
         recording_.advance(screens.finished, screens.shown);
-        if (!recording_.frame().empty()) picture_.show(with_channels(to_u8(recording_.frame()), 4));
+        if (!recording_.frame().empty()) picture_.show(with_channels(picture_to_u8(recording_.frame()), 4));
         if (recording_.is_path() && recording_.frames() == recording_.total()) stop_recording();
     } catch (const std::exception& error) {
         tell(error.what(), true);

@@ -59,9 +59,10 @@ class PictureFrames final : public FrameWriter {
     PictureFrames(fs::path path, bool made) : path_(std::move(path)), made_(made) {}
     void write(int index, const Image& picture) override {
         const Turn turn{*this, index};
-        const std::vector<std::byte> bytes = io::encode_image(picture, extension_of(path_));
+        const fs::path path = frame_path(path_, index);
+        const std::vector<std::byte> bytes = io::encode_image(picture, path);
         turn.wait();
-        write_file(frame_path(path_, index), bytes);
+        write_file(path, bytes);
     }
     void finish() override {
         std::error_code ignored;

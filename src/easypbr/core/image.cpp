@@ -44,6 +44,32 @@ Image convert_channels(const Image& image, int channels) {
     return out;
 }
 
+/// Whether there is no alpha below a value.
+template <class T>
+bool has_alpha_from(const Image& image, T least) {
+    const size_t channels = size_t(image.channels());
+    if (channels % 2 != 0) return true;
+    const auto values = image.pixels<T>();
+    for (size_t i = channels - 1; i < values.size(); i += channels)
+        if (!(values[i] >= least)) return false;
+    return true;
+}
+
+/// Colour times a function of alpha.
+template <class Scale>
+Image with_scaled_color(const Image& image, Scale&& scale) {
+    Image out = image;
+    float* values = out.pixels<float>().data();
+    const size_t channels = size_t(image.channels());
+    if (channels % 2 != 0) return out;
+    parallel_for(image.pixel_count(), pixel_grain, [&](size_t i) {
+        float* p = values + i * channels;
+        const float factor = scale(p[channels - 1]);
+        for (size_t c = 0; c + 1 < channels; ++c) p[c] *= factor;
+    });
+    return out;
+}
+
 }  // namespace
 
 Image::Image(int width, int height, int channels, PixelType type)
@@ -106,6 +132,33 @@ Image to_linear_f32(const Image& image) {
         }
     });
     return out;
+}
+
+bool is_opaque(const Image& image) {
+    switch (image.type()) {
+        case PixelType::u8:
+            return has_alpha_from<uint8_t>(image, 255);
+        case PixelType::u16:
+            return has_alpha_from<uint16_t>(image, 65535);
+        default:
+            return has_alpha_from<float>(image, 1 - 0.5f / 255);
+    }
+}
+
+Image unpremultiplied(const Image& image) {
+    return with_scaled_color(image, [](float alpha) { return alpha > 0 ? 1 / alpha : 0.0f; });
+}
+
+Image premultiplied(const Image& image) {
+    return with_scaled_color(image, [](float alpha) { return alpha; });
+}
+
+Image picture_to_u8(const Image& picture) {
+    return to_u8(picture.type() == PixelType::f32 ? unpremultiplied(picture) : picture);
+}
+
+Image picture_to_linear_f32(const Image& picture) {
+    return picture.type() == PixelType::f32 ? picture : premultiplied(to_linear_f32(picture));
 }
 
 size_t replace_non_finite(Image& image) {

@@ -21,7 +21,7 @@ nb::bytes to_bytes(const std::vector<std::byte>& bytes) {
 
 nb::bytes png_bytes(const ArrayLike& array, bool deep) {
     const Image image = to_image(array, "image");
-    return to_bytes(released([&] { return io::encode_png(deep ? image : to_u8(image)); }));
+    return to_bytes(released([&] { return io::encode_png(deep ? image : picture_to_u8(image)); }));
 }
 
 nb::bytes jpeg_bytes(const ArrayLike& array, int quality) {
@@ -84,7 +84,9 @@ void bind_image(nb::module_& module) {
             released([&] { io::save_image(image, path); });
         },
         nb::arg("image"), nb::arg("path"),
-        "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point images are linear, others sRGB.");
+        "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point images are linear and premultiplied "
+        "by "
+        "alpha, others are sRGB with straight alpha; JPEG and HDR hold no alpha but 1.");
     module.def("encode_png", png_bytes, nb::arg("image"), nb::arg("deep") = false,
                "The bytes of a PNG file of 8 bits; with `deep`, of 16 bits if the image is uint16.");
     module.def("encode_jpeg", jpeg_bytes, nb::arg("image"), nb::arg("quality") = io::jpeg_quality,

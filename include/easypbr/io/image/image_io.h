@@ -22,7 +22,8 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name);
 
 /// Writes by the extension: PNG (u8, u16), JPEG (quality 95), HDR, EXR (float32). Types are converted where
 /// the format asks for it: f32 is clamped and sRGB-encoded for PNG and JPEG, u8 and u16 are decoded for HDR
-/// and EXR. Throws FileError, or ArgumentError for an unknown extension. Never leaves half a file.
+/// and EXR. f32 colour is premultiplied by alpha, that of u8 and u16 is straight. Throws FileError, or
+/// ArgumentError for an unknown extension, or transparent pixels for JPEG or HDR. Never leaves half a file.
 void save_image(const Image& image, const std::filesystem::path& path);
 
 /// The bytes of a PNG file (u8 or u16 image).
@@ -30,6 +31,9 @@ std::vector<std::byte> encode_png(const Image& image);
 
 /// Most pixels a side that save_image() writes into a file with this extension.
 int largest_image_side(std::string_view extension);
+
+/// That files with this extension have no alpha, as messages say it; empty where they have.
+std::string_view lack_of_alpha(std::string_view extension);
 
 /// Extensions that save_image() writes.
 std::vector<std::string> writable_image_extensions();

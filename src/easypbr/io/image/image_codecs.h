@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,7 +40,7 @@ std::vector<std::byte> encode_hdr(const Image& image);
 /// float32 channels, ZIP-compressed scanlines. f32 only.
 std::vector<std::byte> encode_exr(const Image& image);
 /// What save_image() writes into a file with one of writable_image_extensions().
-std::vector<std::byte> encode_image(const Image& image, std::string_view extension);
+std::vector<std::byte> encode_image(const Image& image, const std::filesystem::path& path);
 
 /// Throws FormatError: "cannot read NAME: WHAT".
 [[noreturn]] void fail_image(const std::string& name, std::string_view what);

@@ -64,11 +64,14 @@ Image load_image(const std::filesystem::path& path) {
     return image;
 }
 
-std::vector<std::byte> encode_image(const Image& image, std::string_view extension) {
-    if (extension == "png") return encode_png(image.type() == PixelType::f32 ? to_u8(image) : image);
-    if (extension == "hdr") return encode_hdr(to_linear_f32(image));
-    if (extension == "exr") return encode_exr(to_linear_f32(image));
-    return encode_jpeg(to_u8(image));
+std::vector<std::byte> encode_image(const Image& image, const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension == "png") return encode_png(image.type() == PixelType::f32 ? picture_to_u8(image) : image);
+    if (extension == "exr") return encode_exr(picture_to_linear_f32(image));
+    if (!is_opaque(image))
+        throw ArgumentError(
+            fmt::format("cannot write {}: {}; write a PNG or EXR", path.string(), lack_of_alpha(extension)));
+    return extension == "hdr" ? encode_hdr(to_linear_f32(image)) : encode_jpeg(to_u8(image));
 }
 
 void save_image(const Image& image, const std::filesystem::path& path) {
@@ -78,7 +81,12 @@ void save_image(const Image& image, const std::filesystem::path& path) {
         throw ArgumentError(fmt::format("cannot write {}: unknown image extension '{}' (expected {})",
                                         path.string(), extension, fmt::join(known, ", ")));
     if (image.empty()) throw ArgumentError(fmt::format("cannot write {}: the image is empty", path.string()));
-    write_file(path, encode_image(image, extension));
+    write_file(path, encode_image(image, path));
+}
+
+std::string_view lack_of_alpha(std::string_view extension) {
+    if (extension == "hdr") return "HDR has no transparency";
+    return extension == "jpg" || extension == "jpeg" ? "JPEG has no transparency" : "";
 }
 
 int largest_image_side(std::string_view extension) {
