@@ -42,8 +42,8 @@ void prepare_extended(inout Surface s, vec3 albedo, float metallic) {
     s.f90 = mix(vec3(e.f90), vec3(1.0), metallic);
     float roughness = s.roughness;
     if (has_anisotropy) {
-        // The albedo of an anisotropic lobe is that of an isotropic one with the root mean square of its alphas to 0.06
-        // at any angle and strength.
+        // The albedo of an anisotropic lobe is about that of an isotropic one with the root mean square of its alphas: off by
+        // 10 % at strengths to 0.5, by 38 % at strength 1 and 85 degrees across the grain.
         vec2 alpha = anisotropic_alpha(s, s.alpha);
         roughness = sqrt(sqrt(dot(alpha, alpha) * 0.5));
     }
