@@ -142,10 +142,10 @@ def test_steps_are_for_meshes(easypbr, sphere, render, tmp_path):
     assert not (tmp_path / "out.png").exists()
 
 
-# Light of 2 before a transparent background: code 255 wherever anything is covered.
+# Light of 1 and more before a transparent background: code 255 wherever anything is covered.
 def test_alpha_is_straight_in_png_and_premultiplied_in_exr(easypbr, render, sphere, tmp_path):
-    render(sphere, "-o", "a.exr", "--mode", "raster", "--background", "transparent", "--ground", "none", "--samples", "4",
-           "--set", "material.emissive=2,2,2")  # fmt: skip
+    render(sphere, "-o", "a.exr", "--mode", "raster", "--background", "transparent", "--set", "ground.mode=none",
+           "--samples", "4", "--set", "material.emissive=1,1,1")  # fmt: skip
     easypbr("convert", "a.exr", "a.png")
     picture = png.read(tmp_path / "a.png")
     covered = picture[..., 3] > 0
