@@ -8,6 +8,7 @@
 #include "easypbr/core/luminance.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
+#include "easypbr/render/raytrace/ray_surface.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -42,13 +43,6 @@ size_t volume_of(const RayScene& scene, const PathState& state, int surface) {
     const auto found = std::ranges::find_if(
         state.volumes, [&](int volume) { return volume >= 0 && scene.item_of(volume).object == object; });
     return size_t(found - state.volumes.begin());
-}
-
-/// Per world unit; 0 where nothing is absorbed.
-Vec3 absorption_of(const Material& material) {
-    if (!(material.thickness > 0) || !std::isfinite(material.attenuation_distance)) return Vec3::Zero();
-    const Vec3 logarithm = material.attenuation_color.cwiseMax(1e-30f).array().log();
-    return -logarithm / material.attenuation_distance;
 }
 
 bool is_lit_kind(float code) {

@@ -12,6 +12,7 @@
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_scene.h"
 #include "easypbr/render/raytrace/ray_surface.h"
+#include "easypbr/render/raytrace/straight_light.h"
 
 namespace easypbr::render {
 
@@ -46,6 +47,9 @@ struct RayElement {
     int faces = 0;                                ///< of a mesh; 0: the elements are no faces
     const std::vector<Vec3>* vertices = nullptr;  ///< of faces
     const RayGaussians* gaussians = nullptr;
+    float unit = 1;          ///< RayScene::unit()
+    float outwards = 1;      ///< -1: the normals of faces look into the volume that they bound
+    bool is_closed = false;  ///< of faces that light passes: their mesh has no holes
 
     int of(unsigned triangle) const { return first + int(triangle) / triangles; }
 };
@@ -59,7 +63,7 @@ inline bool is_filtered(const DrawItem& item) {
 struct RayQuery {
     embree::Context context;
     Transmissive transmissive = Transmissive::passed;
-    Vec3* transmittance = nullptr;  ///< of what is passed straight, where it is asked for
+    StraightLight* light = nullptr;  ///< that passes surfaces, where it is asked for
     bool meets_gaussians = true;
 
     explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) { embree::begin(context); }
@@ -68,19 +72,33 @@ struct RayQuery {
 /// Light below this part is none.
 inline constexpr float least_transmittance = 1e-3f;
 
+/// Takes from light what a surface takes that it passes straight; whether some is left.
+inline bool passes(StraightLight& light, const RayElement& element, const RTCRay& ray, const RTCHit& hit) {
+    const DrawItem& item = *element.item;
+    const Passage passage = passage_at(item, element.of(hit.primID), hit.u, hit.v);
+    if (passage.thickness > 0 && passage.coverage > 0) {
+        const float along = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
+        const float thickness = passage.thickness / element.unit;
+        const VolumeFace face{&item,     ray.tfar,       along * element.outwards > 0, element.is_closed,
+                              thickness, passage.color()};
+        if (!light.add(face)) return true;
+    }
+    light.left = light.left.cwiseProduct(passage.left());
+    return light.left.maxCoeff() > least_transmittance;
+}
+
 /// Leaves out holes and what lets the ray through.
 inline void filter(const RTCFilterFunctionNArguments* args) {
     const auto& element = *static_cast<const RayElement*>(args->geometryUserPtr);
     if (args->valid[0] != -1 || args->N != 1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
     const auto& query = *reinterpret_cast<const RayQuery*>(args->context);
-    const int index = element.of(hit.primID);
-    if (query.transmittance) {
-        Vec3& left = *query.transmittance;
-        left = left.cwiseProduct(transmittance_at(*element.item, index, hit.u, hit.v));
-        if (left.maxCoeff() > least_transmittance) args->valid[0] = 0;
+    const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
+    if (query.light) {
+        if (passes(*query.light, element, ray, hit)) args->valid[0] = 0;
         return;
     }
+    const int index = element.of(hit.primID);
     if (query.transmissive == Transmissive::opaque && element.item->alpha == AlphaMode::blend) {
         args->valid[0] = 0;
         return;
@@ -89,7 +107,6 @@ inline void filter(const RTCFilterFunctionNArguments* args) {
                             ? opacity_at(*element.item, index, hit.u, hit.v)
                             : coverage_at(*element.item, index, hit.u, hit.v);
     if (query.transmissive == Transmissive::layers && stops > 0) return;
-    const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
 }
 
@@ -147,9 +164,9 @@ inline void occlude_by_gaussian(const RTCOccludedFunctionNArguments* args) {
     auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
     const RayGaussians::Meeting meeting = meeting_of(args, ray);
     bool stops = false;
-    if (Vec3* left = reinterpret_cast<const RayQuery*>(args->context)->transmittance) {
-        *left *= 1 - meeting.opacity;
-        stops = left->maxCoeff() <= least_transmittance;
+    if (StraightLight* light = reinterpret_cast<const RayQuery*>(args->context)->light) {
+        light->left *= 1 - meeting.opacity;
+        stops = light->left.maxCoeff() <= least_transmittance;
     } else {
         stops = is_stopped(args, ray, meeting.opacity);
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/gpu/facing.h"
 #include "easypbr/render/raytrace/embree_scene.h"
 #include "easypbr/render/raytrace/ray_callbacks.h"
 
@@ -39,6 +40,8 @@ struct RayScene::Scene final : RayGeometry {
     void attach(const embree::Geometry& geometry, const RayElement& element) {
         const DrawItem& item = *element.item;
         elements.push_back(std::make_unique<RayElement>(element));
+        elements.back()->unit = float(1 / world_scale);
+        if (element.faces > 0 && item.material.transmits()) set_winding(*elements.back());
         rtcSetGeometryUserData(geometry.get(), elements.back().get());
         calls_back |= is_filtered(item) || element.gaussians;
         if (is_filtered(item) && !element.gaussians) {
@@ -46,6 +49,16 @@ struct RayScene::Scene final : RayGeometry {
             rtcSetGeometryOccludedFilterFunction(geometry.get(), filter);
         }
         tree.attach(geometry, unsigned(elements.size() - 1));
+    }
+
+    /// Of faces that light passes.
+    void set_winding(RayElement& element) {
+        const DrawItem& item = *element.item;
+        const auto [found, is_new] = windings.try_emplace(item.object, gpu::Winding::unknown);
+        if (is_new) found->second = gpu::winding_of(item.mesh().V, item.mesh().F);
+        const bool is_mirrored = item.object->T_world_mesh.linear().determinant() < 0;
+        element.is_closed = found->second != gpu::Winding::unknown;
+        element.outwards = (found->second == gpu::Winding::inward) != is_mirrored ? -1.0f : 1.0f;
     }
 
     /// Of the parts of an object the same.
@@ -144,6 +157,7 @@ struct RayScene::Scene final : RayGeometry {
     std::vector<float> reaches;                         ///< likewise
     std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
     std::map<const SceneSnapshot::Object*, std::vector<Vec3>> vertices;
+    std::map<const SceneSnapshot::Object*, gpu::Winding> windings;  ///< of those that light passes
 };
 
 RayScene::RayScene() = default;
@@ -420,14 +434,14 @@ std::vector<uint8_t> RayScene::blocked(std::span<const RaySegment> rays, Neighbo
 }
 
 Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float distance) const {
-    Vec3 left = Vec3::Ones();
-    if (!scene_) return left;
+    if (!scene_) return Vec3::Ones();
     RTCRay ray;
     put_ray(from, direction, distance, ray);
+    StraightLight light;
     RayQuery query(Transmissive::passed);
-    query.transmittance = &left;
+    query.light = &light;
     embree::occlude(scene_->tree.get(), query.context, ray);
-    return ray.tfar < 0 ? Vec3(Vec3::Zero()) : left;
+    return ray.tfar < 0 ? Vec3(Vec3::Zero()) : light.absorbed(distance, float(unit_));
 }
 
 }  // namespace easypbr::render

@@ -9,6 +9,9 @@
 namespace easypbr::render {
 namespace {
 
+/// Reflectance at a right angle of what names no index of refraction.
+constexpr float default_f0 = 0.04f;
+
 int wrapped(float coordinate, int size, Wrap wrap) {
     if (!std::isfinite(coordinate)) return 0;
     const float period = wrap == Wrap::mirror ? 2.0f : 1.0f;
@@ -109,19 +112,40 @@ float coverage_at(const DrawItem& item, int element, float u, float v) {
     return opacity;
 }
 
-float opacity_at(const DrawItem& item, int element, float u, float v) {
-    const float coverage = coverage_at(item, element, u, v);
-    const Material& m = item.material;
-    if (item.kind != SurfaceKind::lit || !m.transmits()) return coverage;
-    return coverage * (1 - m.transmittance(AlphaMode::opaque).mean());
+Vec3 absorption_of(const Material& material) {
+    if (!(material.thickness > 0) || !std::isfinite(material.attenuation_distance)) return Vec3::Zero();
+    const Vec3 logarithm = material.attenuation_color.cwiseMax(1e-30f).array().log();
+    return -logarithm / material.attenuation_distance;
 }
 
-Vec3 transmittance_at(const DrawItem& item, int element, float u, float v) {
-    const float coverage = coverage_at(item, element, u, v);
-    const Vec3 open = Vec3::Constant(1 - coverage);
+Passage passage_at(const DrawItem& item, int element, float u, float v) {
+    Passage passage;
+    passage.coverage = coverage_at(item, element, u, v);
     const Material& m = item.material;
-    if (item.kind != SurfaceKind::lit || !m.transmits()) return open;
-    return open + coverage * m.transmittance(AlphaMode::opaque);
+    if (item.kind != SurfaceKind::lit || !m.transmits()) return passage;
+    Vec3 color = m.base_color.cwiseProduct(vertex_color(item, element, u, v).head<3>());
+    float through = m.transmission, metallic = m.metallic;
+    passage.thickness = m.thickness * float(item.scale());
+    if (is_face(item) && item.textured()) {
+        const Vec2 uv = uv_at(item, element, u, v);
+        const auto channel = [&](const Texture& texture) {
+            return texture ? Texel(texture, uv).channel(texture.channel) : 1.0f;
+        };
+        if (m.base_color_texture) color = color.cwiseProduct(Texel(m.base_color_texture, uv).color());
+        through *= channel(m.transmission_texture);
+        metallic *= channel(m.metallic_texture);
+        passage.thickness *= channel(m.thickness_texture);
+    }
+    passage.entering = 1 - m.dielectric_f0(default_f0);
+    passage.tint = color.cwiseMin(1.0f).cwiseMax(0.0f) * std::clamp(through * (1 - metallic), 0.0f, 1.0f);
+    return passage;
+}
+
+float opacity_at(const DrawItem& item, int element, float u, float v) {
+    const Passage passage = passage_at(item, element, u, v);
+    const Vec3 way = absorption_of(item.material) * (0.5f * passage.thickness);
+    return passage.coverage *
+           (1 - passage.entering * (passage.color().array() * (-way).array().exp()).mean());
 }
 
 RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
@@ -131,7 +155,7 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
     RaySurface s;
     s.normal = hit.normal;
     Vec3 base = m.base_color.cwiseProduct(vertex_color(item, hit.element, hit.u, hit.v).head<3>());
-    float metallic = m.metallic;
+    float metallic = m.metallic, transmission = m.transmission;
     s.roughness = m.roughness;
     s.emission = m.emissive;
     const bool face = is_face(item);
@@ -144,6 +168,8 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
         const Vec2 uv = uv_at(item, hit.element, hit.u, hit.v);
         if (m.base_color_texture) base = base.cwiseProduct(Texel(m.base_color_texture, uv).color());
         if (m.metallic_texture) metallic *= Texel(m.metallic_texture, uv).channel(m.metallic_texture.channel);
+        if (m.transmission_texture)
+            transmission *= Texel(m.transmission_texture, uv).channel(m.transmission_texture.channel);
         if (m.roughness_texture)
             s.roughness *= Texel(m.roughness_texture, uv).channel(m.roughness_texture.channel);
         if (m.emissive_texture) s.emission = s.emission.cwiseProduct(Texel(m.emissive_texture, uv).color());
@@ -159,7 +185,7 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
     }
     const float f0 = std::min(m.dielectric_f0(dielectric_f0) * m.specular, 1.0f);
     s.f0 = (1 - metallic) * f0 * m.specular_color + metallic * base;
-    s.diffuse = (1 - metallic) * (1 - m.transmission) * base;
+    s.diffuse = (1 - metallic) * (1 - transmission) * base;
     return s;
 }
 

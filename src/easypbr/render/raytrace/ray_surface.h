@@ -11,10 +11,24 @@ struct RayHit;
 /// Part of an element that there is, whatever it is made of: 1 for opaque ones, 0 in the holes of masked
 /// ones, and the opacity of blended ones. Of faces at barycentric coordinates.
 float coverage_at(const DrawItem& item, int element, float u, float v);
-/// What an element leaves of light that passes it straight; its material is that of the factors alone.
-Vec3 transmittance_at(const DrawItem& item, int element, float u, float v);
+/// How a face or another element lets light through that passes it straight.
+struct Passage {
+    float coverage = 1;   ///< coverage_at()
+    float entering = 0;   ///< what it does not reflect
+    Vec3 tint{0, 0, 0};   ///< of its colours, once for a thin surface and once for both faces of a volume
+    float thickness = 0;  ///< of the volume below it, world units; 0: thin
+
+    /// The tint of one face.
+    Vec3 color() const { return thickness > 0 ? Vec3(tint.cwiseSqrt()) : tint; }
+    /// What one face leaves of light but for what a volume absorbs.
+    Vec3 left() const { return Vec3::Constant(1 - coverage) + coverage * entering * color(); }
+};
+Passage passage_at(const DrawItem& item, int element, float u, float v);
+/// Of a material's volume, per world unit; 0 where nothing is absorbed.
+Vec3 absorption_of(const Material& material);
 /// Part of a ray that an element stops: 1 for opaque ones, 0 in the holes of masked ones, and for others what
-/// they take from light. Of faces at barycentric coordinates; of others by their material.
+/// they take from light, each face of a volume by half of its thickness. Of faces at barycentric coordinates;
+/// of others by their material.
 float opacity_at(const DrawItem& item, int element, float u, float v);
 
 /// glTF's core model.

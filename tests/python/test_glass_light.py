@@ -1,0 +1,136 @@
+"""Path traced light through glass: the shadows of lamps against closed forms, and what shines or is shown within and behind it."""
+import math
+
+import numpy as np
+import pytest
+
+from easypbr import Material, Mesh, Scene, Viewer
+
+#: Transmittance of a way of 1.
+ABSORBING = np.array([0.8, 0.5, 0.2])
+#: What a face of index 1.5 lets in.
+ENTERING = 0.96
+
+
+def box(low, high):
+    """A closed mesh whose faces look outwards."""
+    V = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    F = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+                  [1, 5, 7], [1, 7, 3]])
+    return Mesh(np.array(low) + V * (np.array(high) - low), F)
+
+
+def sheet(y, half, up=True):
+    """A level square."""
+    V = np.array([[-half, y, half], [half, y, half], [half, y, -half], [-half, y, -half]], float)
+    mesh = Mesh(V, np.array([[0, 1, 2], [0, 2, 3]] if up else [[0, 2, 1], [0, 3, 2]]))
+    mesh.UV = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
+    return mesh
+
+
+def glass(**changes):
+    return Material(**{"base_color": "white", "roughness": 0, "transmission": 1, **changes})
+
+
+def absorbing(thickness=1.0, **changes):
+    return glass(thickness=thickness, attenuation_color=tuple(ABSORBING), attenuation_distance=1, **changes)
+
+
+def matt(value=0.5, **changes):
+    return Material(base_color=(value,) * 3, specular=0, roughness=1, **changes)
+
+
+def picture(meshes, camera, lamp=None, samples=16, **changes):
+    """The mean of a linear picture."""
+    scene = Scene()
+    for i, mesh in enumerate(meshes):
+        scene.show(mesh, f"mesh{i}")
+    values = {"environment": {"enabled": False}, "lights": {name: {"enabled": False} for name in ("key", "fill", "rim")},
+              "path": {"enabled": True, "clamp": 0, "denoise": "off", "bounces": 0}, "ground": {"mode": "none"},
+              "background": {"mode": "color", "color": "#000000"}, "tonemap": {"exposure": 1, "operator": "none"},
+              "camera": {"fov_y_deg": 1, **camera}}
+    view = Viewer((16, 16), values, scene)
+    view.settings.update(changes)
+    if lamp is not None:
+        view.add_light("lamp", **lamp)
+    return view.render(samples=samples, hdr=True)[..., :3].mean((0, 1))
+
+
+SUN = {"type": "directional", "direction": (0, -1, 0), "intensity": 2}
+#: Beside the diagonals of squares, where rays meet both of their faces.
+BELOW = {"position": (3.4, 1, 0.13), "target": (0.4, 0, 0.13)}
+
+
+def part_of_light(caster, lamp=SUN, camera=None):
+    """What a caster leaves of the light on a floor. Nothing is reflected, and no light is found by chance: only numbers are
+    rounded."""
+    floor = sheet(0, 50)
+    floor.material = matt()
+    camera = BELOW if camera is None else camera
+    return picture([floor, caster], camera, lamp) / picture([floor], camera, lamp)
+
+
+@pytest.mark.parametrize("thickness", [0.01, 1, 3])
+def test_a_closed_volume_absorbs_along_the_way_through_it(thickness):
+    slab = box((-5, 2, -5), (5, 3, 5))
+    slab.material = absorbing(thickness)
+    np.testing.assert_allclose(part_of_light(slab), ENTERING**2 * ABSORBING, rtol=0.003)
+
+
+@pytest.mark.parametrize("pose", [np.diag([0.01, 0.01, 0.01, 1]), np.diag([-0.01, 0.01, 0.01, 1])])
+@pytest.mark.parametrize("inward", [False, True])
+def test_the_way_is_in_world_units_whichever_way_faces_look(pose, inward):
+    slab = box((-500, 200, -500), (500, 300, 500))
+    if inward:
+        slab.F = np.asarray(slab.F)[:, ::-1].copy()
+    slab.T_parent_mesh = pose
+    slab.material = absorbing(100)
+    np.testing.assert_allclose(part_of_light(slab), ENTERING**2 * ABSORBING, rtol=0.003)
+
+
+def test_a_volume_is_tinted_once():
+    slab = box((-5, 2, -5), (5, 3, 5))
+    slab.material = absorbing(base_color=(0.5, 1, 0.25))
+    np.testing.assert_allclose(part_of_light(slab), ENTERING**2 * ABSORBING * (0.5, 1, 0.25), rtol=0.003)
+
+
+@pytest.mark.parametrize("up", [False, True])
+def test_an_open_sheet_has_its_thickness_in_world_units(up):
+    pane = sheet(200, 500, up)
+    pane.T_parent_mesh = np.diag([0.01, 0.01, 0.01, 1])
+    pane.material = absorbing(50, base_color=(0.5, 1, 0.25))
+    np.testing.assert_allclose(part_of_light(pane), ENTERING * ABSORBING**0.5 * (0.5, 1, 0.25), rtol=0.003)
+
+
+def test_a_lamp_in_a_volume_shines_through_what_is_before_it():
+    slab = box((-5, 1, -5), (5, 5, 5))
+    slab.material = absorbing()
+    lamp = {"type": "point", "position": (0.4, 2.5, 0.13), "intensity": 10, "radius": 0}
+    np.testing.assert_allclose(part_of_light(slab, lamp), ENTERING * ABSORBING**1.5, rtol=0.003)
+
+
+def test_a_surface_in_a_volume_is_lit_through_what_is_before_it():
+    block = box((-2, -1, -2), (2, 1.5, 2))
+    block.material = absorbing(ior=1)
+    plate = sheet(0, 1)
+    plate.material = matt()
+    above = {"position": (0.3, 20, 0.13), "target": (0.3, 0, 0.13), "up": "+z"}
+    # There and back, without reflection. 2 %: the way back is chosen by chance.
+    seen = [picture(meshes, above, SUN, samples=256) for meshes in ([block, plate], [plate])]
+    np.testing.assert_allclose(seen[0] / seen[1], ABSORBING**3, rtol=0.02)
+
+
+def test_textures_and_vertex_colours_tint_the_light_of_lamps():
+    linear = np.where(np.array([255, 60, 20]) > 10, ((np.array([255, 60, 20]) / 255 + 0.055) / 1.055) ** 2.4, 0)
+    pane = sheet(2, 5)
+    pane.material = glass(base_color_texture=np.tile(np.array([255, 60, 20], np.uint8), (4, 4, 1)))
+    np.testing.assert_allclose(part_of_light(pane), ENTERING * linear, rtol=0.003)
+    pane.material = glass(transmission_texture=np.zeros((4, 4), np.uint8))
+    assert (part_of_light(pane) == 0).all()
+    pane.material = glass(metallic=1, metallic_texture=np.full((4, 4), 51, np.uint8))
+    np.testing.assert_allclose(part_of_light(pane), ENTERING * 0.8, rtol=0.003)
+    pane.material = absorbing(2, thickness_texture=np.full((4, 4), 51, np.uint8))
+    np.testing.assert_allclose(part_of_light(pane), ENTERING * ABSORBING**0.4, rtol=0.003)
+    pane.material = glass()
+    pane.C = np.tile([255, 60, 20], (4, 1)) / 255
+    np.testing.assert_allclose(part_of_light(pane), ENTERING * linear, rtol=0.003)
