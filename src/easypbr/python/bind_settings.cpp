@@ -66,16 +66,6 @@ const char* type_name(FieldType type) {
     return names[size_t(type)];
 }
 
-/// Values that never change are their own copies.
-template <class T>
-void bind_copies(nb::class_<T>& type) {
-    const auto same = [](nb::handle self) { return nb::borrow(self); };
-    type.def("__copy__", same, nb::sig("def __copy__(self) -> Self"));
-    type.def(
-        "__deepcopy__", [](nb::handle self, nb::handle /*memo*/) { return nb::borrow(self); },
-        nb::arg("memo"), nb::sig("def __deepcopy__(self, memo: object) -> Self"));
-}
-
 void bind_automatic(nb::module_& module) {
     nb::class_<Automatic> automatic(module, "Automatic",
                                     "Value of a setting: inferred at the next image, then latched.");
@@ -90,14 +80,14 @@ void bind_automatic(nb::module_& module) {
             "__eq__", [](const Automatic&, nb::handle other) { return nb::isinstance<Automatic>(other); },
             nb::arg("other").none())
         .def("__hash__", [](const Automatic&) { return 1; });
-    bind_copies(automatic);
+    bind_copies(automatic, [](const Automatic& a) { return a; });
     nb::class_<Follow> follow(module, "Follow", "Value of a setting: inferred again for every image.");
     follow.def("__repr__", [](const Follow&) { return "follow"; })
         .def(
             "__eq__", [](const Follow&, nb::handle other) { return nb::isinstance<Follow>(other); },
             nb::arg("other").none())
         .def("__hash__", [](const Follow&) { return 2; });
-    bind_copies(follow);
+    bind_copies(follow, [](const Follow& f) { return f; });
     module.attr("auto") = Automatic{};
     module.attr("follow") = Follow{};
 }
