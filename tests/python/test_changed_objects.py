@@ -30,7 +30,7 @@ def surfels() -> Mesh:
 
 
 def splats() -> Mesh:
-    mesh = easypbr.splats(random_points(), scales=0.1, opacities=np.full(40, 0.9))
+    mesh = easypbr.splats(random_points(), scales=0.1, opacities=np.full(40, 0.9), colors=np.full((40, 3), 0.5))
     mesh.L = np.arange(40) % 5
     return mesh
 

@@ -106,7 +106,8 @@ def test_a_lamp_in_a_volume_shines_through_what_is_before_it():
     slab = box((-5, 1, -5), (5, 5, 5))
     slab.material = absorbing()
     lamp = {"type": "point", "position": (0.4, 2.5, 0.13), "intensity": 10, "radius": 0}
-    np.testing.assert_allclose(part_of_light(slab, lamp), ENTERING * ABSORBING**1.5, rtol=0.003)
+    # Beside the lamp's foot the way is longer, by 0.13 % where the light is measured: 0.3 % of the most absorbed channel.
+    np.testing.assert_allclose(part_of_light(slab, lamp), ENTERING * ABSORBING**1.5, rtol=0.006)
 
 
 def test_a_surface_in_a_volume_is_lit_through_what_is_before_it():
