@@ -7,7 +7,7 @@
 
 #include "easypbr/native/shaders.h"
 
-namespace easypbr::native {
+namespace easypbr::flush_subnormals_test {
 namespace {
 
 /// A subnormal product, which compilers cannot know.
@@ -19,10 +19,10 @@ float tiny_product() {
 TEST(FlushSubnormals, HoldsWhileItLives) {
     ASSERT_GT(tiny_product(), 0.0f);
     {
-        const FlushSubnormals flush;
+        const native::FlushSubnormals flush;
         EXPECT_EQ(tiny_product(), 0.0f);
         {
-            const FlushSubnormals within;
+            const native::FlushSubnormals within;
             EXPECT_EQ(tiny_product(), 0.0f);
         }
         EXPECT_EQ(tiny_product(), 0.0f);
@@ -31,21 +31,21 @@ TEST(FlushSubnormals, HoldsWhileItLives) {
 }
 
 TEST(FlushSubnormals, KernelsHaveNone) {
-    constexpr int count = int(stream_alignment);
+    constexpr int count = int(native::stream_alignment);
     const float rotation[3][3] = {{2e-38f, 0, 0}, {0, 2e-38f, 0}, {0, 0, 2e-38f}};
     const std::vector<float> u(count, 0.5f), cosines(count, 0.01f), sines(count, 1.0f);
-    const std::string_view before = instruction_set();
-    for (const std::string_view set : instruction_sets()) {
-        use_instruction_set(set);
+    const std::string_view before = native::instruction_set();
+    for (const std::string_view set : native::instruction_sets()) {
+        native::use_instruction_set(set);
         std::vector<float> x(count, 1.0f), y = x, z = x;
-        find_map_directions(rotation, u.data(), cosines.data(), sines.data(), count,
-                            {x.data(), y.data(), z.data()});
+        native::find_map_directions(rotation, u.data(), cosines.data(), sines.data(), count,
+                                    {x.data(), y.data(), z.data()});
         EXPECT_EQ(y.front(), 0.0f) << set;
         EXPECT_EQ(z.front(), -2e-38f) << set;
         EXPECT_GT(tiny_product(), 0.0f) << set;
     }
-    use_instruction_set(before);
+    native::use_instruction_set(before);
 }
 
 }  // namespace
-}  // namespace easypbr::native
+}  // namespace easypbr::flush_subnormals_test

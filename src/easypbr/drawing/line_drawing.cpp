@@ -28,7 +28,7 @@ constexpr double tolerance_px = 0.05, straight_px = 4;
 using Object = SceneSnapshot::Object;
 
 /// Whether the faces of a part hide what lies behind them.
-bool is_opaque(const MeshData& mesh, int material, const MaterialSettings& settings) {
+bool occludes(const MeshData& mesh, int material, const MaterialSettings& settings) {
     const Material own = mesh.materials.empty() ? Material() : mesh.materials[size_t(material)];
     const Material drawn = render::overridden(own, settings, {});
     return drawn.transmittance(drawn.alpha_mode_for(has_transparent_colors(mesh.C))).isZero();
@@ -40,7 +40,7 @@ Occluder occluder_of(const Object& object, DrawMode mode, const MaterialSettings
     std::vector<MeshPart> parts = object.mesh->parts;
     if (parts.empty()) parts = {{"", 0, int(object.mesh->F.rows()), 0}};
     for (const MeshPart& part : parts) {
-        if (!is_opaque(*object.mesh, part.material, settings)) continue;
+        if (!occludes(*object.mesh, part.material, settings)) continue;
         for (int i = 0; i < part.face_count; ++i) occluder.faces.push_back(part.first_face + i);
     }
     return occluder;
