@@ -22,8 +22,9 @@ Material squares(int side, float tiles) {
     return m;
 }
 
-// Between texels opacity is bilinear, so that a square of k texels is cut at its corners by uv = 1/2, u and v
-// from 0 to 1 across the corner: what is left of the 64 texels is (k - 1)^2 + 2 (k - 1) + 4 (1 - log(2)) / 2.
+// Bilinear opacity is 1 in the (k - 1)^2 cells between the centres of a square of k x k texels. In each of
+// the 4 (k - 1) cells along its sides it passes 1/2 in the middle. In each of its 4 corner cells it is u v,
+// which is 1/2 or more in an area of (1 - ln 2) / 2.
 double coverage_of(int side) {
     const double inner = side - 1;
     return (inner * inner + 2 * inner + 2 * (1 - std::log(2.0))) / 64;
