@@ -8,6 +8,7 @@
 #include "easypbr/core/luminance.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
+#include "easypbr/render/raytrace/path_volumes.h"
 #include "easypbr/render/raytrace/ray_surface.h"
 #include "easypbr/scene/resolve.h"
 
@@ -35,14 +36,6 @@ using enum PathSampler::Dimension;
 
 bool is_extended_kind(float code) {
     return std::abs(code - code_of(SurfaceKind::extended)) < 0.01f;
-}
-
-/// Which of a path's volumes a surface bounds, as all parts of an object do; none: their number.
-size_t volume_of(const RayScene& scene, const PathState& state, int surface) {
-    const auto* const object = scene.item_of(surface).object;
-    const auto found = std::ranges::find_if(
-        state.volumes, [&](int volume) { return volume >= 0 && scene.item_of(volume).object == object; });
-    return size_t(found - state.volumes.begin());
 }
 
 bool is_lit_kind(float code) {
@@ -303,19 +296,6 @@ void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered
     }
 }
 
-void PathTracer::cross(int surface, bool is_volume, PathState& state) const {
-    if (!is_volume) return;
-    auto& volumes = state.volumes;
-    if (const size_t left = volume_of(*scene_, state, surface); left < volumes.size()) {
-        std::copy(volumes.begin() + std::ptrdiff_t(left) + 1, volumes.end(),
-                  volumes.begin() + std::ptrdiff_t(left));
-        volumes.back() = -1;
-    } else {
-        std::copy_backward(volumes.begin(), volumes.end() - 1, volumes.end());
-        volumes.front() = surface;
-    }
-}
-
 void PathTracer::choose_color(PathBatch& batch, size_t path, uint32_t depth) const {
     ExtendedPath& at = batch.extended_paths[path];
     Vec3 volume = batch.extensions->volume.at(path);
@@ -326,13 +306,6 @@ void PathTracer::choose_color(PathBatch& batch, size_t path, uint32_t depth) con
                                                : int8_t(3 * state.sampler.pair(depth, color_channel).x());
     volume.y() = material.ior_of_channel(at.channel);
     batch.extensions->volume.set(path, volume);
-}
-
-void PathTracer::disperse(int8_t channel, PathState& state) const {
-    if (channel == all_channels || state.channel != all_channels) return;
-    state.channel = channel;
-    // One of three equally likely channels stands for all.
-    state.throughput = 3 * state.throughput[channel] * Vec3::Unit(channel);
 }
 
 void PathTracer::absorb(float distance, PathState& state) const {
@@ -347,8 +320,7 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
     if (!(most > 0)) return false;
     const bool inside = batch.extensions && batch.inside[path] > 0.5f,
                passes = batch.extensions && direction.dot(batch.face.at(path)) < 0;
-    if (passes) disperse(batch.extended_paths[path].channel, state);
-    if (passes) cross(batch.extended_paths[path].surface, batch.extensions->volume.at(path).z() > 0, state);
+    if (passes) pass(*scene_, batch, path, state);
     const bool is_sure =
         inside || passes ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
     if (is_sure) return true;

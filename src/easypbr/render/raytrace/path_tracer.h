@@ -68,12 +68,8 @@ class PathTracer {
     /// What a path becomes that goes on in a direction; false where it ends.
     bool goes_on(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
                  PathState& state) const;
-    /// Of a path that has passed a surface: the volumes that it is in now.
-    void cross(int surface, bool is_volume, PathState& state) const;
     /// Of a path at a surface with extensions: the channel whose index of refraction it meets there.
     void choose_color(PathBatch& batch, size_t path, uint32_t depth) const;
-    /// Of a path that has passed a surface which had chosen a channel, or none.
-    void disperse(int8_t channel, PathState& state) const;
     /// Weakens a path by the volume that it is in.
     void absorb(float distance, PathState& state) const;
     /// The paths that go on from hits.

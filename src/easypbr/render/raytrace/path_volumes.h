@@ -1,0 +1,48 @@
+// The volumes that paths are in.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "easypbr/render/raytrace/path_batch.h"
+#include "easypbr/render/raytrace/ray_scene.h"
+
+namespace easypbr::render {
+
+/// Which of a path's volumes a surface bounds, as all parts of an object do; none: their number.
+inline size_t volume_of(const RayScene& scene, const PathState& state, int surface) {
+    const auto* const object = scene.item_of(surface).object;
+    const auto found = std::ranges::find_if(
+        state.volumes, [&](int volume) { return volume >= 0 && scene.item_of(volume).object == object; });
+    return size_t(found - state.volumes.begin());
+}
+
+/// Of a path that has passed a volume's surface.
+inline void cross_volume(const RayScene& scene, int surface, PathState& state) {
+    auto& volumes = state.volumes;
+    if (const size_t left = volume_of(scene, state, surface); left < volumes.size()) {
+        std::copy(volumes.begin() + std::ptrdiff_t(left) + 1, volumes.end(),
+                  volumes.begin() + std::ptrdiff_t(left));
+        volumes.back() = -1;
+    } else {
+        std::copy_backward(volumes.begin(), volumes.end() - 1, volumes.end());
+        volumes.front() = surface;
+    }
+}
+
+/// Of a path that has passed a surface which had chosen a channel, or none.
+inline void disperse(int8_t channel, PathState& state) {
+    if (channel == all_channels || state.channel != all_channels) return;
+    state.channel = channel;
+    // One of three equally likely channels stands for all.
+    state.throughput = 3 * state.throughput[channel] * Vec3::Unit(channel);
+}
+
+/// What becomes of a path of a batch whose surfaces have extensions, and that passes its surface.
+inline void pass(const RayScene& scene, const PathBatch& batch, size_t path, PathState& state) {
+    const ExtendedPath& at = batch.extended_paths[path];
+    disperse(at.channel, state);
+    if (batch.extensions->volume.at(path).z() > 0) cross_volume(scene, at.surface, state);
+}
+
+}  // namespace easypbr::render
