@@ -42,6 +42,10 @@ bool is_lit_kind(float code) {
     return code < code_of(SurfaceKind::display) - 0.05f;
 }
 
+bool is_unlit_kind(float code) {
+    return code > code_of(SurfaceKind::unlit) - 0.1f;
+}
+
 /// The numbers below `count`, those of a surface together, in order within it. Surfaces are -1 or more.
 template <class SurfaceOf>
 std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
@@ -387,8 +391,7 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
     to.view.set(at, -hit.direction);
     to.reach[at] = scene.reach(hit.hit.surface);
     to.albedo.set(at, surfaces.albedo.at(i));
-    // What is shown past the light is as if it were matt.
-    to.parameters.set(at, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
+    to.parameters.set(at, surfaces.parameters.at(i));
     PathState state = hit.state;
     if (hit.density < widest_density)
         state.scattered = Scattering::wide;
@@ -399,6 +402,12 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
 }
 
 }  // namespace
+
+Vec3 PathTracer::shown(const HitSurfaces& surfaces, size_t i) const {
+    const bool emits = is_lit_kind(surfaces.kind[i]) || is_unlit_kind(surfaces.kind[i]);
+    return emits ? surfaces.emission.at(i)
+                 : Vec3(surfaces.albedo.at(i) / std::max(resolved_->exposure, 1e-20f));
+}
 
 PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const {
     // Surfaces are evaluated item by item.
@@ -417,11 +426,11 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
     for (size_t i = 0; i < hits.size(); ++i) {
         const Hit& hit = hits[sorted[i]];
         if (is_caught(hit, depth, radiance)) continue;
-        const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) * weights[sorted[i]];
+        const Vec3 emission = hit.state.throughput.cwiseProduct(shown(surfaces, i)) * weights[sorted[i]];
         const bool extended = is_extended_kind(surfaces.kind[i]),
                    ends = hit.state.bounces > resolved_->settings.path.bounces;
         if (!extended || ends) add(hit.state.index, emission, hit.state.scattered, radiance);
-        if (surfaces.kind[i] > 0.9f || ends) continue;
+        if (!is_lit_kind(surfaces.kind[i]) || ends) continue;
         const size_t at = add_path(*scene_, hit, surfaces, i, extended ? next.extended : next.plain);
         if (!extended) continue;
         next.extended.extensions->copy(at, *surfaces.extensions, i);

@@ -13,6 +13,8 @@
 
 namespace easypbr::render {
 
+struct HitSurfaces;
+
 /// Estimates the radiance that surfaces send back along paths: lights, emissive surfaces and the sky by
 /// next-event estimation at each surface, and what directions find that are sampled by the BSDF. The sky and
 /// emissive surfaces are found both ways, combined by MIS (Veach and Guibas 1995). Materials are evaluated by
@@ -70,6 +72,9 @@ class PathTracer {
                  PathState& state) const;
     /// Of a path at a surface with extensions: the channel whose index of refraction it meets there.
     void choose_color(PathBatch& batch, size_t path, uint32_t depth) const;
+    /// What a surface adds to a path that has met it: what it emits, or the colour that it has in the
+    /// picture, as a linear curve would show it.
+    Vec3 shown(const HitSurfaces& surfaces, size_t i) const;
     /// Weakens a path by the volume that it is in.
     void absorb(float distance, PathState& state) const;
     /// The paths that go on from hits.

@@ -162,8 +162,8 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
         const float dielectric = resolved_->settings.shading.dielectric_f0;
         if (hit.item && hit.item->style.mode == DrawMode::splats)
             return sum + weight.cwiseProduct(emission_at(*scene_, hit));
-        const RaySurface s =
-            hit.item ? surface_at(hit, dielectric) : ground_surface(*scene_->ground(), dielectric);
+        const RaySurface s = hit.item ? surface_at(hit, dielectric, resolved_->exposure)
+                                      : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));
         const Vec3 diffuse = s.diffuse.cwiseProduct(Vec3::Ones() - reflects);
         Vec3 lit = from_lights(hit, s.normal);

@@ -148,7 +148,7 @@ float opacity_at(const DrawItem& item, int element, float u, float v) {
            (1 - passage.entering * (passage.color().array() * (-way).array().exp()).mean());
 }
 
-RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
+RaySurface surface_at(const RayHit& hit, float dielectric_f0, float exposure) {
     const DrawItem& item = *hit.item;
     const MeshData& mesh = item.mesh();
     const Material& m = item.material;
@@ -175,8 +175,7 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
         if (m.emissive_texture) s.emission = s.emission.cwiseProduct(Texel(m.emissive_texture, uv).color());
     }
     if (item.kind != SurfaceKind::lit) {
-        // Shown past the light: as if it were matt.
-        s.diffuse = base;
+        s.emission = base / std::max(exposure, 1e-20f);
         return s;
     }
     if (m.unlit) {

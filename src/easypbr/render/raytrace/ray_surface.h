@@ -40,7 +40,8 @@ struct RaySurface {
     float roughness = 1;
 };
 
-/// Textures are read at their nearest texel; normal maps do not count.
-RaySurface surface_at(const RayHit& hit, float dielectric_f0);
+/// Textures are read at their nearest texel; normal maps do not count. `exposure`: of the picture, in which
+/// what is shown past the light has the colour that it has.
+RaySurface surface_at(const RayHit& hit, float dielectric_f0, float exposure);
 
 }  // namespace easypbr::render
