@@ -219,8 +219,9 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scatt
     const Emitters::Samples chosen = emitters_.sample(*scene_, places, points, of_emitters.size());
     for (size_t i = 0; i < chosen.count; ++i) {
         const size_t path = of_emitters[i];
-        to.set_direction(path, chosen.direction.at(i), chosen.radiance.at(i),
-                         emitter_part_ * chosen.density[i]);
+        const Vec3 direction = chosen.direction.at(i);
+        const float index2 = squared_index_towards(*scene_, batch, path, direction);
+        to.set_direction(path, direction, chosen.radiance.at(i) / index2, emitter_part_ * chosen.density[i]);
         to.distance[path] = chosen.distance[i] * (1 - before_emitter) - before_emitter;
     }
 }
@@ -403,10 +404,10 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
 
 }  // namespace
 
-Vec3 PathTracer::shown(const HitSurfaces& surfaces, size_t i) const {
-    const bool emits = is_lit_kind(surfaces.kind[i]) || is_unlit_kind(surfaces.kind[i]);
-    return emits ? surfaces.emission.at(i)
-                 : Vec3(surfaces.albedo.at(i) / std::max(resolved_->exposure, 1e-20f));
+Vec3 PathTracer::shown(const HitSurfaces& surfaces, size_t i, const PathState& state) const {
+    if (is_lit_kind(surfaces.kind[i])) return surfaces.emission.at(i) / squared_index(*scene_, state);
+    if (is_unlit_kind(surfaces.kind[i])) return surfaces.emission.at(i);
+    return surfaces.albedo.at(i) / std::max(resolved_->exposure, 1e-20f);
 }
 
 PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const {
@@ -426,7 +427,8 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
     for (size_t i = 0; i < hits.size(); ++i) {
         const Hit& hit = hits[sorted[i]];
         if (is_caught(hit, depth, radiance)) continue;
-        const Vec3 emission = hit.state.throughput.cwiseProduct(shown(surfaces, i)) * weights[sorted[i]];
+        const Vec3 emission =
+            hit.state.throughput.cwiseProduct(shown(surfaces, i, hit.state)) * weights[sorted[i]];
         const bool extended = is_extended_kind(surfaces.kind[i]),
                    ends = hit.state.bounces > resolved_->settings.path.bounces;
         if (!extended || ends) add(hit.state.index, emission, hit.state.scattered, radiance);

@@ -74,7 +74,7 @@ class PathTracer {
     void choose_color(PathBatch& batch, size_t path, uint32_t depth) const;
     /// What a surface adds to a path that has met it: what it emits, or the colour that it has in the
     /// picture, as a linear curve would show it.
-    Vec3 shown(const HitSurfaces& surfaces, size_t i) const;
+    Vec3 shown(const HitSurfaces& surfaces, size_t i, const PathState& state) const;
     /// Weakens a path by the volume that it is in.
     void absorb(float distance, PathState& state) const;
     /// The paths that go on from hits.

@@ -45,4 +45,24 @@ inline void pass(const RayScene& scene, const PathBatch& batch, size_t path, Pat
     if (batch.extensions->volume.at(path).z() > 0) cross_volume(scene, at.surface, state);
 }
 
+/// Of the index of refraction of the medium that a path is in. A path's throughput is that of radiance over
+/// this number, which refraction leaves as it is.
+inline float squared_index(const RayScene& scene, const PathState& state) {
+    if (state.volumes[0] < 0) return 1;
+    constexpr int8_t green = 1;
+    const int8_t channel = state.channel == all_channels ? green : state.channel;
+    const float index = scene.item_of(state.volumes[0]).material.ior_of_channel(channel);
+    return index * index;
+}
+
+/// The same of the medium that a direction from a path's surface leads into.
+inline float squared_index_towards(const RayScene& scene, const PathBatch& batch, size_t path,
+                                   const Vec3& direction) {
+    if (!batch.extensions || direction.dot(batch.face.at(path)) > 0)
+        return squared_index(scene, batch.state[path]);
+    PathState passed = batch.state[path];
+    pass(scene, batch, path, passed);
+    return squared_index(scene, passed);
+}
+
 }  // namespace easypbr::render
