@@ -97,10 +97,12 @@ TEST(Glb, RoundTripsGeometry) {
     Array2i::Dense E(1, 2);
     E << 1, 3;
     data.E = E;
+    data.uv_tangents = Array4f::Dense{{0, 1, 0, 1}, {0, 1, 0, -1}, {1, 0, 0, 1}, {-1, 0, 0, -1}};
     const MeshData read = first_child(round_trip(Mesh(data)).mesh);
     EXPECT_EQ(read.name, "square");
     EXPECT_EQ(read.V, data.V);
     EXPECT_EQ(read.N, data.N);
+    EXPECT_EQ(read.uv_tangents, data.uv_tangents);
     EXPECT_EQ(read.F, data.F);
     EXPECT_EQ(read.E, data.E);
     EXPECT_EQ(read.T_parent_mesh.matrix(), data.T_parent_mesh.matrix());

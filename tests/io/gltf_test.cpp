@@ -156,6 +156,25 @@ TEST(Gltf, ReadsInterleavedQuantisedAndSparseData) {
     EXPECT_EQ(Vec3(mesh.N.row(2)), Vec3(0, 0, 1));
 }
 
+TEST(Gltf, ReadsTangentsOfVerticesWithNormals) {
+    for (const bool with_normals : {true, false}) {
+        GltfBuilder builder;
+        nlohmann::json& primitive = builder.triangle();
+        if (with_normals) primitive["attributes"]["NORMAL"] = builder.floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+        // Quantised, half as long, and none.
+        primitive["attributes"]["TANGENT"] = builder.accessor(
+            std::vector<int16_t>{0, 32767, 0, -32767, 16384, 0, 0, 32767, 0, 0, 0, 32767}, 5122, "VEC4", 3);
+        builder.json["accessors"].back()["normalized"] = true;
+        const MeshData mesh = node(decode(builder));
+        // Section 3.7.2.1 of the specification: without normals tangents are ignored.
+        ASSERT_EQ(mesh.uv_tangents.rows(), with_normals ? 3 : 0);
+        if (!with_normals) continue;
+        EXPECT_EQ(Eigen::RowVector4f(mesh.uv_tangents.row(0)), Eigen::RowVector4f(0, 1, 0, -1));
+        EXPECT_EQ(Eigen::RowVector4f(mesh.uv_tangents.row(1)), Eigen::RowVector4f(1, 0, 0, 1));
+        EXPECT_EQ(Eigen::RowVector4f(mesh.uv_tangents.row(2)), Eigen::RowVector4f(0, 0, 0, 0));
+    }
+}
+
 TEST(Gltf, AttributesOfOtherProgramsBecomeScalars) {
     GltfBuilder builder;
     nlohmann::json& primitive = builder.triangle();

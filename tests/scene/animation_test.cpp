@@ -326,6 +326,22 @@ TEST(Animations, NormalsFollowTheInverseTranspose) {
     EXPECT_LT((mesh.N().row(0).transpose() - Vec3(0.5f, 1, 0).normalized()).norm(), 1e-6);
 }
 
+// The tangent (1, 1, 0) is turned as edges are: to (2, 1, 0).
+TEST(Animations, TangentsFollowTheJoints) {
+    MeshData data = *triangle().snapshot();
+    const float half = std::sqrt(0.5f);
+    data.uv_tangents = Array4f::Dense(Eigen::RowVector4f(half, half, 0, -1).replicate(3, 1));
+    Mesh mesh(data);
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].deformation.uv_tangents = data.uv_tangents;
+    rig.nodes[1].scale = Vec3d(2, 1, 1);
+    Animations(std::move(rig)).apply(0, 0);
+    const Array4f turned = mesh.snapshot()->uv_tangents;
+    ASSERT_EQ(turned.rows(), 3);
+    EXPECT_LT((Vec3(turned.row(0).head<3>()) - Vec3(2, 1, 0).normalized()).norm(), 1e-6);  // of rounding
+    EXPECT_EQ(turned(0, 3), -1);
+}
+
 TEST(Animations, RefuseBrokenRigs) {
     AnimationRig rig = skinned(triangle());
     rig.nodes[1].parent = 2;

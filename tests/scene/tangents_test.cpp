@@ -6,6 +6,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/merge.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::tangents_test {
@@ -37,6 +39,48 @@ TEST(CornerTangents, OfAPlanePointAlongU) {
     const ArrayXf T = tangents_of(make_plane(3));
     ASSERT_EQ(T.rows(), 6);
     for (Eigen::Index i = 0; i < T.rows(); ++i) EXPECT_EQ(T.row(i), Eigen::RowVector4f(1, 0, 0, 1));
+}
+
+TEST(MeshTangents, AreThoseOfTheMeshWhereItHasThem) {
+    MeshData mesh = *make_plane(3).snapshot();
+    const ArrayXf computed = corner_tangents(mesh.V, mesh.N, mesh.UV, mesh.F);
+    Array4f::Dense given = Array4f::Dense::Zero(mesh.V.rows(), 4);
+    given.row(mesh.F(0, 1)) << 0, 0, 1, -1;
+    mesh.uv_tangents = given;
+    const ArrayXf T = mesh_tangents(mesh, mesh.N);
+    for (Eigen::Index i = 0; i < mesh.F.size(); ++i) {
+        const bool is_given = mesh.F.data()[i] == mesh.F(0, 1);
+        EXPECT_EQ(T.row(i), is_given ? Eigen::RowVector4f(0, 0, 1, -1) : Eigen::RowVector4f(computed.row(i)));
+    }
+}
+
+TEST(MeshTangents, AreDroppedByEditsOfWhatTheyBelongTo) {
+    MeshData data = *make_plane(3).snapshot();
+    data.uv_tangents = Array4f::Dense(Eigen::RowVector4f(0, 0, 1, 1).replicate(data.V.rows(), 1));
+    const auto kept = [&](auto&& edit) {
+        Mesh mesh(data);
+        edit(mesh);
+        return !mesh.snapshot()->uv_tangents.empty();
+    };
+    EXPECT_TRUE(kept([](Mesh& m) { m.set_C(ArrayXf::Dense(ArrayXf::Dense::Ones(m.V().rows(), 3))); }));
+    EXPECT_FALSE(kept([](Mesh& m) { m.set_V(Array3f::Dense(2 * m.V())); }));
+    EXPECT_FALSE(kept([](Mesh& m) { m.set_N({}); }));
+    EXPECT_FALSE(kept([](Mesh& m) { m.set_UV(Array2f::Dense(2 * m.UV())); }));
+    EXPECT_FALSE(kept([](Mesh& m) { m.set_F(Array3i::Dense(m.F().topRows(1))); }));
+}
+
+// A mirror at x = 0 with y doubled: directions turn as differences of positions do, (3, 4, 0) / 5 to
+// (-3, 8, 0); normals stay on their side, so that the bitangent's sign changes.
+TEST(MeshTangents, TurnWithTheMesh) {
+    MeshData data = *make_plane(3).snapshot();
+    data.uv_tangents = Array4f::Dense(Eigen::RowVector4f(0.6f, 0.8f, 0, 1).replicate(data.V.rows(), 1));
+    Eigen::Affine3d T = Eigen::Affine3d::Identity();
+    T.linear().diagonal() << -1, 2, 1;
+    const MeshData turned = transformed(data, T);
+    const Vec3 wanted = Vec3(-3, 8, 0).normalized();
+    // Rounding of single precision.
+    EXPECT_LT((Vec3(turned.uv_tangents.row(0).head<3>()) - wanted).norm(), 1e-6f);
+    EXPECT_EQ(turned.uv_tangents(0, 3), -1);
 }
 
 TEST(CornerTangents, MirroredHalvesDoNotMix) {

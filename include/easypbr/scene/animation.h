@@ -60,7 +60,8 @@ Array1d sample(const AnimationChannel& channel, double time_s);
 
 /// How a mesh's vertices follow joints and morph targets.
 struct Deformation {
-    Array3f V, N;  ///< at rest; N may be empty
+    Array3f V, N;         ///< at rest; N may be empty
+    Array4f uv_tangents;  ///< at rest, as MeshData has them, or empty
     /// n x 4 k, or empty: places in Skin::joints, and how much each joint counts.
     ArrayXf joints, weights;
     /// For each target what is added to V and N at weight 1; N may be empty.

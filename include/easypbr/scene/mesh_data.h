@@ -71,12 +71,16 @@ struct MeshData {
     Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
     ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
     Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
-    Array3f T;   ///< n x 3 tangent vectors (surfels), or empty
-    Array1f B;   ///< n x 1 bitangent lengths (surfels), or empty
-    Array3i F;   ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
-    Array2i E;   ///< k x 2 vertex indices of line segments
-    Array1i L;   ///< n x 1 or m x 1 labels; with as many faces as vertices those of the vertices
-    Array1f I;   ///< n x 1 intensities
+    /// n x 4 tangents of normal maps and anisotropy: unit direction along u, sign of the bitangent
+    /// (sign cross(n, t)); sign 0: computed at this vertex. Empty: all are computed when the mesh is drawn.
+    /// An edit of V, N, UV or F drops them.
+    Array4f uv_tangents;
+    Array3f T;  ///< n x 3 tangent vectors (surfels), or empty
+    Array1f B;  ///< n x 1 bitangent lengths (surfels), or empty
+    Array3i F;  ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
+    Array2i E;  ///< k x 2 vertex indices of line segments
+    Array1i L;  ///< n x 1 or m x 1 labels; with as many faces as vertices those of the vertices
+    Array1f I;  ///< n x 1 intensities
     /// Of 3D Gaussians whose means are V, or empty.
     SplatArrays splats;
     std::vector<ScalarArray> scalars;           ///< any number of named values

@@ -27,4 +27,8 @@ Array3f face_normals(const Array3f& V, const Array3i& F);
 /// tangent perpendicular to the normal. `N` and `UV` have a row for each vertex.
 ArrayXf corner_tangents(const Array3f& V, const Array3f& N, const Array2f& UV, const Array3i& F);
 
+/// Tangents per face corner as they are drawn: those that the mesh has (MeshData::uv_tangents),
+/// corner_tangents() elsewhere. `N` has a row for each vertex.
+ArrayXf mesh_tangents(const MeshData& mesh, const Array3f& N);
+
 }  // namespace easypbr

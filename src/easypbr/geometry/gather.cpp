@@ -45,6 +45,7 @@ void choose_vertices(MeshData& target, const MeshData& mesh, const std::vector<i
     target.N = rows_of(mesh.N, vertices);
     target.C = rows_of(mesh.C, vertices);
     target.UV = rows_of(mesh.UV, vertices);
+    target.uv_tangents = rows_of(mesh.uv_tangents, vertices);
     target.T = rows_of(mesh.T, vertices);
     target.B = rows_of(mesh.B, vertices);
     target.I = rows_of(mesh.I, vertices);

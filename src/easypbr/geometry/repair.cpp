@@ -46,6 +46,7 @@ Ids attribute_ids(const MeshData& mesh) {
     refine(ids, mesh.N);
     refine(ids, mesh.C);
     refine(ids, mesh.UV);
+    refine(ids, mesh.uv_tangents);
     refine(ids, mesh.T);
     refine(ids, mesh.B);
     refine(ids, mesh.I);
@@ -179,7 +180,10 @@ Mesh remove_duplicate_vertices(const Mesh& mesh, const DuplicateOptions& options
     }
     geometry::drop_degenerate(selection, *data);
     MeshData result = geometry::chosen(*data, selection);
-    if (!options.keep_seams && !data->N.empty()) result.N = mean_normals(*data, selection);
+    if (!options.keep_seams) {
+        if (!data->N.empty()) result.N = mean_normals(*data, selection);
+        result.uv_tangents = {};
+    }
     return Mesh(std::move(result));
 }
 

@@ -6,6 +6,7 @@
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/weld.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr {
@@ -48,6 +49,7 @@ Mesh smooth(const Mesh& mesh, int iterations, Smoothing smoothing) {
     geometry::remember_seams(result);
     result.V = std::move(V);
     if (!result.N.empty()) result.N = smooth_normals(result);
+    drop_stale_tangents(result, *data);
     return Mesh(std::move(result));
 }
 

@@ -183,6 +183,11 @@ MeshData refined(const MeshData& mesh, Subdivision subdivision) {
     result.N = with_mean_normals(mesh.N, edges);
     result.C = with_means(mesh.C, edges);
     result.UV = with_means(mesh.UV, edges);
+    // Between different signs the mean is 0: no tangent.
+    if (subdivision == Subdivision::loop)
+        result.uv_tangents = {};
+    else
+        result.uv_tangents = with_means(mesh.uv_tangents, edges);
     result.T = with_means(mesh.T, edges);
     result.B = with_means(mesh.B, edges);
     result.I = with_means(mesh.I, edges);

@@ -462,6 +462,7 @@ void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh
     node.mesh->edit([&](MeshData& data) {
         data.V = out.V;
         if (out.N.rows()) data.N = out.N;
+        if (out.uv_tangents.rows()) data.uv_tangents = out.uv_tangents;
     });
 }
 

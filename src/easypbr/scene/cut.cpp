@@ -48,6 +48,7 @@ MeshData with_vertices(const MeshData& mesh, const std::vector<Mixture>& vertice
     out.N = mixed(mesh.N, vertices);
     out.C = mixed(mesh.C, vertices);
     out.UV = mixed(mesh.UV, vertices);
+    out.uv_tangents = mixed(mesh.uv_tangents, vertices);
     out.T = mixed(mesh.T, vertices);
     out.B = mixed(mesh.B, vertices);
     out.voxel_size = mesh.voxel_size;

@@ -39,6 +39,10 @@ void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& 
         T /= sum;
         const Vec3d v = out.V.row(r).transpose().cast<double>();
         out.V.row(r) = (T.leftCols<3>() * v + T.col(3)).cast<float>().transpose();
+        if (out.uv_tangents.rows()) {
+            auto t = out.uv_tangents.row(r).head<3>();
+            t = (T.leftCols<3>() * t.transpose().cast<double>()).stableNormalized().cast<float>().transpose();
+        }
         if (!out.N.rows()) return;
         const Vec3d n = out.N.row(r).transpose().cast<double>();
         out.N.row(r) = (detail::cofactors(T.leftCols<3>()) * n).cast<float>().transpose();
@@ -57,8 +61,9 @@ void normalize(Array3f::Dense& N) {
 void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
     const Eigen::Index n = d.V.rows();
     const auto fits = [&](const auto& array) { return array.empty() || array.rows() == n; };
-    bool good = fits(d.N) && fits(d.joints) && fits(d.weights) && d.joints.rows() == d.weights.rows() &&
-                d.joints.cols() == d.weights.cols() && d.targets_V.size() == d.targets_N.size();
+    bool good = fits(d.N) && fits(d.uv_tangents) && fits(d.joints) && fits(d.weights) &&
+                d.joints.rows() == d.weights.rows() && d.joints.cols() == d.weights.cols() &&
+                d.targets_V.size() == d.targets_N.size();
     for (size_t k = 0; good && k < d.targets_V.size(); ++k)
         good = fits(d.targets_V[k]) && fits(d.targets_N[k]);
     if (!good) throw ArgumentError("animation rig: joints, weights or morph targets do not fit the vertices");
@@ -71,7 +76,8 @@ void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
 
 Deformed deformed(const Deformation& from, const std::vector<float>& weights,
                   const std::vector<Eigen::Affine3d>& T_mesh_joints) {
-    Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N)};
+    Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N),
+                 from.uv_tangents.empty() ? Array4f::Dense(0, 4) : Array4f::Dense(from.uv_tangents)};
     add_targets(from, weights, out);
     if (!T_mesh_joints.empty()) follow_joints(from, T_mesh_joints, out);
     normalize(out.N);

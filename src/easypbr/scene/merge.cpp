@@ -206,6 +206,7 @@ MeshData merged(Meshes meshes) {
     whole.N = joined_normals(meshes);
     whole.C = joined(meshes, &MeshData::C, 1.0f);
     whole.UV = joined(meshes, &MeshData::UV, 0.0f);
+    whole.uv_tangents = joined(meshes, &MeshData::uv_tangents, 0.0f);
     if (all_have(meshes, [](const MeshData& mesh) { return !mesh.T.empty() && !mesh.B.empty(); })) {
         whole.T = joined(meshes, &MeshData::T, 0.0f);
         whole.B = joined(meshes, &MeshData::B, 0.0f);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/mesh_shared.h"
 #include "easypbr/scene/offset.h"
 
@@ -59,6 +60,7 @@ void Mesh::edit(const std::function<void(MeshData&)>& change) {
         const std::shared_ptr<const MeshData> before = snapshot();
         MeshData next = *before;
         change(next);
+        drop_stale_tangents(next, *before);
         validate(next, *before);
         if (replace(before, std::make_shared<const MeshData>(std::move(next)))) return;
     }

@@ -12,6 +12,7 @@ void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows) {
     mesh.N = rows_of(mesh.N, rows);
     mesh.C = rows_of(mesh.C, rows);
     mesh.UV = rows_of(mesh.UV, rows);
+    mesh.uv_tangents = rows_of(mesh.uv_tangents, rows);
     mesh.T = rows_of(mesh.T, rows);
     mesh.B = rows_of(mesh.B, rows);
     mesh.L = rows_of(mesh.L, rows);
@@ -25,6 +26,7 @@ void replace_arrays(MeshData& mesh, const MeshData& arrays) {
     mesh.N = arrays.N;
     mesh.C = arrays.C;
     mesh.UV = arrays.UV;
+    mesh.uv_tangents = arrays.uv_tangents;
     mesh.T = arrays.T;
     mesh.B = arrays.B;
     mesh.F = arrays.F;
@@ -42,12 +44,24 @@ void replace_arrays(MeshData& mesh, const MeshData& arrays) {
 std::vector<uint64_t> array_revisions(const MeshData& mesh) {
     const SplatArrays& splats = mesh.splats;
     std::vector<uint64_t> all{
-        mesh.V.revision(),           mesh.N.revision(),        mesh.C.revision(),
-        mesh.UV.revision(),          mesh.T.revision(),        mesh.B.revision(),
-        mesh.F.revision(),           mesh.E.revision(),        mesh.L.revision(),
-        mesh.I.revision(),           splats.scales.revision(), splats.rotations.revision(),
-        splats.opacities.revision(), splats.sh.revision(),     mesh.source_vertex.revision(),
-        mesh.source_face.revision()};
+        mesh.V.revision(),
+        mesh.N.revision(),
+        mesh.C.revision(),
+        mesh.UV.revision(),
+        mesh.uv_tangents.revision(),
+        mesh.T.revision(),
+        mesh.B.revision(),
+        mesh.F.revision(),
+        mesh.E.revision(),
+        mesh.L.revision(),
+        mesh.I.revision(),
+        splats.scales.revision(),
+        splats.rotations.revision(),
+        splats.opacities.revision(),
+        splats.sh.revision(),
+        mesh.source_vertex.revision(),
+        mesh.source_face.revision(),
+    };
     for (const ScalarArray& scalar : mesh.scalars) all.push_back(scalar.values.revision());
     return all;
 }
@@ -56,6 +70,14 @@ MeshData without_arrays(const MeshData& mesh) {
     MeshData out = mesh;
     replace_arrays(out, {});
     return out;
+}
+
+void drop_stale_tangents(MeshData& edited, const MeshData& before) {
+    const auto same = [](const auto& a, const auto& b) { return a.revision() == b.revision(); };
+    if (!same(edited.uv_tangents, before.uv_tangents)) return;
+    if (!same(edited.V, before.V) || !same(edited.N, before.N) || !same(edited.UV, before.UV) ||
+        !same(edited.F, before.F))
+        edited.uv_tangents = {};
 }
 
 }  // namespace easypbr

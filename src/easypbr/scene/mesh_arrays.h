@@ -38,4 +38,7 @@ std::vector<uint64_t> array_revisions(const MeshData& mesh);
 /// A mesh without arrays, parts and sources, and otherwise the same.
 MeshData without_arrays(const MeshData& mesh);
 
+/// Empties MeshData::uv_tangents where they are still those of `before`, but not what they belong to.
+void drop_stale_tangents(MeshData& edited, const MeshData& before);
+
 }  // namespace easypbr

@@ -95,6 +95,7 @@ void require_shapes(const MeshData& data) {
     require_rows("N", data.N, n, "vertex");
     require_rows("C", data.C, n, "vertex");
     require_rows("UV", data.UV, n, "vertex");
+    require_rows("uv_tangents", data.uv_tangents, n, "vertex");
     require_rows("T", data.T, n, "vertex");
     require_rows("B", data.B, n, "vertex");
     require_rows_of_either("L", data.L, data);

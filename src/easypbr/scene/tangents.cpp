@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -203,6 +204,22 @@ ArrayXf corner_tangents(const Array3f& V, const Array3f& N, const Array2f& UV, c
         for (size_t v = begin; v < end; ++v)
             if (const size_t count = fans.begin[v + 1] - fans.begin[v])
                 fan.solve(fans.corners.data() + fans.begin[v], count, T);
+    });
+    return T;
+}
+
+ArrayXf mesh_tangents(const MeshData& mesh, const Array3f& N) {
+    const Array4f& given = mesh.uv_tangents;
+    const auto computed = [&] { return corner_tangents(mesh.V, N, mesh.UV, mesh.F); };
+    if (given.empty()) return computed();
+    // Mixtures of vertices with different signs have none.
+    const auto is_given = [&](Eigen::Index vertex) { return std::abs(given(vertex, 3)) > 0.5f; };
+    require_faces(mesh.F, given.rows());
+    const std::span<const int32_t> corners(mesh.F.data(), size_t(mesh.F.size()));
+    ArrayXf::Dense T = std::ranges::all_of(corners, is_given) ? ArrayXf::Dense(mesh.F.size(), 4)
+                                                              : ArrayXf::Dense(computed());
+    parallel_for(corners.size(), 1 << 15, [&](size_t i) {
+        if (is_given(corners[i])) T.row(Eigen::Index(i)) = given.row(corners[i]);
     });
     return T;
 }

@@ -34,6 +34,19 @@ Array3f turned_normals(const Array3f& N, const Mat3d& M) {
     });
 }
 
+/// Directions turn with the surface; where it is mirrored, turned_normals() stay on their side and the
+/// bitangents change theirs.
+Array4f turned_tangents(const Array4f& tangents, const Mat3d& M) {
+    const float sign = M.determinant() < 0 ? -1.0f : 1.0f;
+    Array4f::Dense result(tangents.rows(), 4);
+    parallel_for(size_t(tangents.rows()), transform_grain, [&](size_t i) {
+        const auto r = Eigen::Index(i);
+        const Vec3d t = M * tangents.row(r).head<3>().transpose().cast<double>();
+        result.row(r) << t.stableNormalized().cast<float>().transpose(), sign * tangents(r, 3);
+    });
+    return result;
+}
+
 /// The two semi-axes of the ellipse t cos(x) + b sin(x). When t and b are perpendicular they are those
 /// already.
 std::pair<Vec3d, Vec3d> semi_axes(const Vec3d& t, const Vec3d& b) {
@@ -70,6 +83,7 @@ MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T) {
     if (!mesh.V.empty())
         result.V = rows(mesh.V.rows(), [&](size_t i) -> Vec3d { return T * row(mesh.V, i); });
     if (!mesh.N.empty()) result.N = turned_normals(mesh.N, M);
+    if (!mesh.uv_tangents.empty()) result.uv_tangents = turned_tangents(mesh.uv_tangents, M);
     if (!mesh.T.empty()) transform_ellipses(result, mesh, M);
     if (!mesh.splats.empty()) result.splats = transformed_splats(mesh.splats, M);
     if (determinant < 0 && !mesh.F.empty()) result.F = Array3i::Dense(mesh.F.rowwise().reverse());

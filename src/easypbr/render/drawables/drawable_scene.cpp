@@ -38,6 +38,7 @@ MeshData with_own_corners(const MeshData& mesh) {
     out.N = rows_of(mesh.N, corners);
     out.C = rows_of(mesh.C, corners);
     out.UV = rows_of(mesh.UV, corners);
+    out.uv_tangents = rows_of(mesh.uv_tangents, corners);
     out.parts = mesh.parts;
     out.voxel_size = mesh.voxel_size;
     out.source_face = mesh.source_face;

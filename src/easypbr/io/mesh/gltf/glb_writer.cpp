@@ -156,6 +156,10 @@ class GlbBuilder {
             UV.col(1).array() = 1 - UV.col(1).array();
             attributes["TEXCOORD_0"] = add_floats(UV.data(), size_t(UV.rows()), 2);
         }
+        // The format has no vertices without a tangent beside others.
+        if (!N.empty() && !data.uv_tangents.empty() &&
+            (data.uv_tangents.col(3).cwiseAbs().array() == 1).all())
+            attributes["TANGENT"] = add_floats(data.uv_tangents.data(), size_t(data.V.rows()), 4);
         if (!data.C.empty()) {
             ArrayXf::Dense C = data.C;
             for (Eigen::Index i = 0; i < C.rows(); ++i)

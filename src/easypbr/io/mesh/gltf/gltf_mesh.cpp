@@ -30,7 +30,7 @@ enum class Mode : size_t { points, lines, line_loop, line_strip, triangles, tria
 /// Vertices that primitives with the same accessors share. Absent attributes have no rows.
 struct VertexBlock {
     Eigen::Index first = 0, row_count = 0;
-    ArrayXf::Dense V, N, UV, C, joints, weights;
+    ArrayXf::Dense V, N, UV, tangents, C, joints, weights;
     std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
     GltfValues values;                                 ///< without rows where there are none
     std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
@@ -56,6 +56,18 @@ void normalize_rows(ArrayXf::Dense& N) {
             row << 0, 0, 1;
         else if (std::abs(length - 1) > 1e-3f)
             row /= length;
+    });
+}
+
+/// Unit directions and signs of 1 or -1; 0 0 0 0 where a row is none.
+void tidy_tangents(ArrayXf::Dense& tangents) {
+    parallel_for(size_t(tangents.rows()), vertex_grain, [&](size_t i) {
+        auto row = tangents.row(Eigen::Index(i));
+        const float length = row.head<3>().norm(), sign = row[3];
+        if (!(length > 1e-20f && length < 1e20f) || !(std::abs(sign) > 0))
+            row.setZero();
+        else
+            row << Eigen::RowVector3f(row.head<3>() / length), std::copysign(1.0f, sign);
     });
 }
 
@@ -147,8 +159,8 @@ class MeshBuilder {
         const std::string wanted_uv = fmt::format("TEXCOORD_{}", uv_set);
         const char* uv = member(attributes, wanted_uv.c_str()) ? wanted_uv.c_str() : "TEXCOORD_0";
         BlockKey key;
-        for (const char* name :
-             {"POSITION", "NORMAL", uv, "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1", "WEIGHTS_1"})
+        for (const char* name : {"POSITION", "NORMAL", uv, "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1",
+                                 "WEIGHTS_1", "TANGENT"})
             key.push_back(document_.optional_integer(attributes, name));
         for (const std::string& name : value_names_)
             key.push_back(document_.optional_integer(attributes, name.c_str()));
@@ -176,6 +188,8 @@ class MeshBuilder {
         read(key[1], 3, 3, block.N);
         read(key[2], 2, 2, block.UV);
         read(key[3], 3, 4, block.C);
+        // Section 3.7.2.1 of the specification: without normals tangents are ignored.
+        if (key[1]) read(key[8], 4, 4, block.tangents);
         for (size_t set : {4, 6}) {
             if (!key[set] || !key[set + 1]) break;
             ArrayXf::Dense joints, weights;
@@ -184,7 +198,7 @@ class MeshBuilder {
             append_columns(block.joints, joints);
             append_columns(block.weights, weights);
         }
-        size_t next = 8;
+        size_t next = 9;
         for (const std::string& name : value_names_) {
             ArrayXf::Dense& values = block.values[name];
             try {
@@ -200,6 +214,7 @@ class MeshBuilder {
             read(key[target + 1], 3, 3, block.targets_N.emplace_back());
         }
         normalize_rows(block.N);
+        tidy_tangents(block.tangents);
         flip_v(block.UV);
         encode_colors(block.C);
         block.row_count = block.V.rows();
@@ -248,6 +263,7 @@ class MeshBuilder {
         Deformation& deformation = mesh.deformation;
         deformation.V = rows_of(deformation.V, rows);
         deformation.N = rows_of(deformation.N, rows);
+        deformation.uv_tangents = rows_of(deformation.uv_tangents, rows);
         deformation.joints = rows_of(deformation.joints, rows);
         deformation.weights = rows_of(deformation.weights, rows);
         for (Array3f& target : deformation.targets_V) target = rows_of(target, rows);
@@ -335,6 +351,7 @@ class MeshBuilder {
         if (out.empty()) return;
         out.V = mesh.data.V;
         out.N = mesh.data.N;
+        out.uv_tangents = mesh.data.uv_tangents;
     }
 
     void compute_missing_normals() {
@@ -359,6 +376,7 @@ class MeshBuilder {
         if (ArrayXf::Dense V = merged(&VertexBlock::V, 0); V.rows()) out_.V = Array3f(V);
         if (ArrayXf::Dense N = merged(&VertexBlock::N, 0); N.rows()) out_.N = Array3f(N);
         if (ArrayXf::Dense UV = merged(&VertexBlock::UV, 0); UV.rows()) out_.UV = Array2f(UV);
+        if (ArrayXf::Dense T = merged(&VertexBlock::tangents, 0); T.rows()) out_.uv_tangents = Array4f(T);
         if (ArrayXf::Dense C = merged(&VertexBlock::C, 1); C.rows()) out_.C = ArrayXf(std::move(C));
         for (const std::string& name : value_names_) {
             const float missing = name == gltf_label_name       ? -1.0f

@@ -28,10 +28,11 @@ struct SplitMesh {
     std::vector<int32_t> indices;
 };
 
-SplitMesh split_by_tangent(const Array3f& V, const Array3f& N, const Array2f& UV, const Array3i& F) {
-    const ArrayXf corners = corner_tangents(V, N, UV, F);
+SplitMesh split_by_tangent(const MeshData& mesh, const Array3f& N) {
+    const Array3i& F = mesh.F;
+    const ArrayXf corners = mesh_tangents(mesh, N);
     SplitMesh split;
-    const size_t n = size_t(V.rows());
+    const size_t n = size_t(mesh.V.rows());
     split.vertex.resize(n);
     split.tangents.assign(n, Tangent16{0, 0, 0, 0});
     split.indices.resize(size_t(F.size()));
@@ -89,7 +90,7 @@ MeshBuffers make_mesh_buffers(const MeshData& mesh, bool with_tangents) {
     if (buffers.winding == gpu::Winding::outward) buffers.box = gpu::box_of(mesh.V);
     SplitMesh split;
     if (with_tangents) {
-        split = split_by_tangent(mesh.V, N, mesh.UV, mesh.F);
+        split = split_by_tangent(mesh, N);
         buffers.tangents = gpu::upload(split.tangents);
         buffers.indices = gpu::upload(split.indices);
     } else {
@@ -117,8 +118,8 @@ MeshBuffers make_mesh_buffers(const MeshData& mesh, bool with_tangents) {
 }  // namespace
 
 const MeshBuffers& MeshCache::get(const MeshData& mesh, bool with_tangents) {
-    const Key key{mesh.V.revision(),  mesh.N.revision(), mesh.C.revision(),
-                  mesh.UV.revision(), mesh.F.revision(), with_tangents};
+    const Key key{mesh.V.revision(),           mesh.N.revision(), mesh.C.revision(), mesh.UV.revision(),
+                  mesh.uv_tangents.revision(), mesh.F.revision(), with_tangents};
     return buffers_.get(key, [&] { return make_mesh_buffers(mesh, with_tangents); });
 }
 

@@ -36,7 +36,7 @@ class MeshCache {
     void evict_unused() { buffers_.evict_unused(); }
 
   private:
-    using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, bool>;
+    using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, bool>;
     RevisionCache<Key, MeshBuffers> buffers_;
 };
 

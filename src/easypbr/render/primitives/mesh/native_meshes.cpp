@@ -75,7 +75,7 @@ std::vector<float> linear_colors(const ArrayXf& C) {
 }
 
 std::vector<int16_t> packed_tangents(const MeshData& mesh, const Array3f& N) {
-    const ArrayXf corners = corner_tangents(mesh.V, N, mesh.UV, mesh.F);
+    const ArrayXf corners = mesh_tangents(mesh, N);
     std::vector<int16_t> packed(size_t(corners.size()));
     parallel_for(packed.size(), size_t(1) << 16,
                  [&](size_t i) { packed[i] = gpu::snorm16(corners.data()[i]); });
@@ -122,11 +122,11 @@ native::TriangleAttributes NativeMeshes::attributes_of(const DrawItem& item, con
     if (item.textured()) attributes.uvs = mesh.UV.data();
     if (item.with_colors) attributes.colors = colors_of(mesh);
     if (item.needs_tangents())
-        attributes.tangents =
-            tangents_
-                .get({mesh.V.revision(), mesh.N.revision(), mesh.UV.revision(), mesh.F.revision()},
-                     [&] { return packed_tangents(mesh, known.N); })
-                .data();
+        attributes.tangents = tangents_
+                                  .get({mesh.V.revision(), mesh.N.revision(), mesh.UV.revision(),
+                                        mesh.uv_tangents.revision(), mesh.F.revision()},
+                                       [&] { return packed_tangents(mesh, known.N); })
+                                  .data();
     return attributes;
 }
 

@@ -1,6 +1,7 @@
 // Triangles without the driver's rasteriser: for machines without a GPU.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <tuple>
@@ -53,7 +54,7 @@ class NativeMeshes {
     /// Of vertices, linear r g b a.
     RevisionCache<uint64_t, std::vector<float>> colors_;
     /// Of corners, x y z w of 1/32767.
-    RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, uint64_t>, std::vector<int16_t>> tangents_;
+    RevisionCache<std::array<uint64_t, 5>, std::vector<int16_t>> tangents_;
     ClusteredMeshes clusters_;
     gpu::ClosedMeshes& closed_;
     gpu::TextureCache& textures_;
