@@ -138,7 +138,7 @@ def render(
     if camera is not None:
         set_camera(view._handle, camera, None if made is None else made.cameras)
     if out is not None:
-        _easypbr.check_picture_path(out, view.settings.image.size)
+        _easypbr.check_picture_path(out, view.settings.image.size, view.settings.background.mode == "transparent")
     picture = view.render(samples=samples, hdr=hdr)
     if out is not None:
         _easypbr.save_image(picture if hdr == linear_file else view.render(samples=samples, hdr=linear_file), out)

@@ -259,6 +259,7 @@ TEST_F(Recordings, SayWhatCannotBeRecorded) {
     session_.settings().background.mode = BackgroundMode::transparent;
     EXPECT_NE(error_of(folder_ / "a.mp4").find("no transparency"), std::string::npos);
     EXPECT_NE(error_of(folder_ / "%d.jpg").find("no transparency"), std::string::npos);
+    EXPECT_NE(error_of(folder_ / "%d.hdr").find("no transparency"), std::string::npos);
     EXPECT_EQ(error_of(folder_ / "%d.png"), "no error");
     EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
 }

@@ -244,6 +244,9 @@ TEST_F(SessionFiles, NothingHalfWritten) {
     EXPECT_THROW(check_picture(folder_ / "a.jpg", session.settings(), Vec2i(65501, 1)), ArgumentError);
     EXPECT_NO_THROW(check_picture(folder_ / "a.jpg", session.settings(), Vec2i(65500, 1)));
     EXPECT_NO_THROW(check_picture(folder_ / "a.png", session.settings(), Vec2i(65536, 1)));
+    session.settings().background.mode = BackgroundMode::transparent;
+    EXPECT_THROW(render_to_file(session, folder_ / "a.jpg"), ArgumentError);
+    EXPECT_THROW(render_to_file(session, folder_ / "a.hdr"), ArgumentError);
     session.settings().background.mode = BackgroundMode::image;
     session.settings().background.image = (folder_ / "none.png").string();
     EXPECT_THROW(render_to_file(session, folder_ / "a.png"), FileError);

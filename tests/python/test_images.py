@@ -69,4 +69,7 @@ def test_what_a_format_cannot_hold_is_refused_before_it_is_drawn(tmp_path, monke
     monkeypatch.setattr(easypbr.Viewer, "render", draw)
     with pytest.raises(ValueError, match="65536x1 pixels, jpg holds at most 65500"):
         easypbr.render(easypbr.shapes.box(), tmp_path / "a.jpg", size=(65536, 1))
+    for name in ("a.jpg", "a.hdr"):
+        with pytest.raises(ValueError, match="has no transparency; write a PNG or EXR, or choose another background"):
+            easypbr.render(easypbr.shapes.box(), tmp_path / name, size=(8, 8), background="transparent")
     assert not list(tmp_path.iterdir())

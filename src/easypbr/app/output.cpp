@@ -38,16 +38,17 @@ void check_picture_fits(const fs::path& path, Vec2i size) {
                         path.string(), size.x(), size.y(), extension, largest));
 }
 
+void check_holds_alpha(const fs::path& path) {
+    const std::string_view lack = io::lack_of_alpha(extension_of(path));
+    if (!lack.empty())
+        throw ArgumentError(fmt::format(
+            "cannot write {}: {}; write a PNG or EXR, or choose another background", path.string(), lack));
+}
+
 void check_picture(const fs::path& path, const Settings& settings, std::optional<Vec2i> size) {
     encoding_for(path);
     check_picture_fits(path, size.value_or(settings.image.size));
-    const std::string extension = extension_of(path);
-    if (settings.background.mode == BackgroundMode::transparent &&
-        (extension == "jpg" || extension == "jpeg"))
-        throw ArgumentError(
-            fmt::format("cannot write {}: JPEG has no transparency; write a PNG or EXR, or choose another "
-                        "background",
-                        path.string()));
+    if (settings.background.mode == BackgroundMode::transparent) check_holds_alpha(path);
     check_writable(path);
 }
 

@@ -17,9 +17,12 @@ Encoding encoding_for(const std::filesystem::path& path, bool deep = false);
 /// Throws ArgumentError when a picture is larger than a file of this extension holds.
 void check_picture_fits(const std::filesystem::path& path, Vec2i size);
 
+/// Throws ArgumentError when a file of this extension cannot hold a transparent background.
+void check_holds_alpha(const std::filesystem::path& path);
+
 /// Throws, before anything is drawn, when the picture cannot be written there: FileError, or ArgumentError
 /// for an unknown extension, a size that the format does not hold (none: the settings') and a transparent
-/// JPEG.
+/// JPEG or HDR.
 void check_picture(const std::filesystem::path& path, const Settings& settings,
                    std::optional<Vec2i> size = std::nullopt);
 

@@ -159,8 +159,7 @@ void check_recording(const fs::path& path, const Settings& settings, const Recor
     if (!options.codec.empty())
         throw ArgumentError(
             fmt::format("cannot record {}: pictures have no codec, got '{}'", path.string(), options.codec));
-    if (transparent && extension_of(pattern).starts_with("jp"))
-        throw ArgumentError(fmt::format("cannot record {}: JPEG has no transparency", path.string()));
+    if (transparent) check_holds_alpha(path);
     check_picture_fits(frame_path(path, 0), options.size.value_or(settings.image.size));
     check_folder(pattern);
 }

@@ -103,14 +103,16 @@ void bind_image(nb::module_& module) {
                "The array as an object with DLPack 1.0, whose flag says that it is read-only.");
     module.def(
         "check_picture_path",
-        [](const fs::path& path, const nb::object& size) {
+        [](const fs::path& path, const nb::object& size, bool transparent) {
             const bool linear = app::encoding_for(path) == app::Encoding::scene_linear;
+            if (transparent) app::check_holds_alpha(path);
             if (!size.is_none()) app::check_picture_fits(path, to_size(size, "size"));
             check_writable(path);
             return linear;
         },
-        nb::arg("path"), nb::arg("size") = nb::none(),
-        "Raises if an image (of this size) cannot be written there; returns whether it will hold linear "
+        nb::arg("path"), nb::arg("size") = nb::none(), nb::arg("transparent") = false,
+        "Raises if an image (of this size, transparent) cannot be written there; returns whether it will "
+        "hold linear "
         "values.");
 }
 
