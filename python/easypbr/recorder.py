@@ -38,7 +38,7 @@ class Recorder:
 
     def record(self, path: str | os.PathLike[str], size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
         """Writes one image, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
-        extension."""
+        extension. `deep` with another extension than PNG raises ArgumentError."""
         return self._handle.record(path, size, samples_of(samples), deep)
 
     def start(

@@ -254,6 +254,10 @@ TEST_F(Recordings, SayWhatCannotBeRecorded) {
     EXPECT_NE(codec.find("libx264"), std::string::npos) << codec;
     EXPECT_NE(error_of(folder_ / "%d.png", {.codec = "libx264"}).find("pictures have no codec"),
               std::string::npos);
+    for (const char* name : {"a.mp4", "%d.jpg", "%d.exr"})
+        EXPECT_NE(error_of(folder_ / name, {.deep = true}).find("16 bits per channel need"),
+                  std::string::npos)
+            << name;
     EXPECT_NE(error_of(folder_ / "%d.jpg", {.size = Vec2i(65536, 1)}).find("65536x1 pixels"),
               std::string::npos);
     session_.settings().background.mode = BackgroundMode::transparent;

@@ -125,6 +125,10 @@ def test_recorder(sphere, size, tmp_path):
     assert path == tmp_path / "img.png"
     np.testing.assert_array_equal(easypbr.load_image(path), view.render())
     assert easypbr.load_image(view.recorder.record(tmp_path / "deep.png", deep=True)).dtype == np.uint16
+    for name in ("deep.jpg", "deep.hdr", "deep.exr"):
+        with pytest.raises(easypbr.ArgumentError, match="16 bits per channel need a PNG file"):
+            view.recorder.record(tmp_path / name, deep=True)
+        assert not (tmp_path / name).exists()
     assert view.timing["draw"] > 0
 
 

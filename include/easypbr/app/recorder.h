@@ -20,7 +20,7 @@ struct RecordingOptions {
     std::optional<Vec2i> size = std::nullopt;   ///< none: the settings'
     std::optional<int> samples = std::nullopt;  ///< none: the settings'
     std::string codec = {};  ///< FFmpeg's name of an encoder; empty: the usual one of the file's kind
-    bool deep = false;       ///< PNG with 16 bits
+    bool deep = false;       ///< 16 bits: PNG only
 };
 
 /// Frames are read back while the next ones are drawn, and encoded and written by threads beside it, in the

@@ -24,8 +24,11 @@ Encoding encoding_for(const fs::path& path, bool deep) {
         throw ArgumentError(fmt::format("cannot write {}: unknown extension '{}'{}, expected one of {}",
                                         path.string(), extension, did_you_mean(extension, known),
                                         fmt::join(known, ", ")));
+    if (deep && extension != "png")
+        throw ArgumentError(
+            fmt::format("cannot write {}: 16 bits per channel need a PNG file", path.string()));
     if (extension == "hdr" || extension == "exr") return Encoding::scene_linear;
-    return deep && extension == "png" ? Encoding::srgb16 : Encoding::srgb8;
+    return deep ? Encoding::srgb16 : Encoding::srgb8;
 }
 
 void check_picture_fits(const fs::path& path, Vec2i size) {

@@ -11,7 +11,7 @@
 namespace easypbr::app {
 
 /// What a file of this extension holds: scene_linear for HDR and EXR, srgb16 for PNG when `deep`, else srgb8.
-/// Throws ArgumentError for an extension that cannot be written.
+/// Throws ArgumentError for an extension that cannot be written, and for one that is not PNG when `deep`.
 Encoding encoding_for(const std::filesystem::path& path, bool deep = false);
 
 /// Throws ArgumentError when a picture is larger than a file of this extension holds.

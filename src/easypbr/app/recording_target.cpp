@@ -148,6 +148,9 @@ void check_recording(const fs::path& path, const Settings& settings, const Recor
                 fmt::format("cannot record {}: videos have no transparency; record PNG or EXR pictures "
                             "(out/frame_%04d.png), or choose another background",
                             path.string()));
+        if (options.deep)
+            throw ArgumentError(
+                fmt::format("cannot record {}: 16 bits per channel need PNG pictures", path.string()));
         io::check_video(path, options.codec);
         return check_writable(path);
     }
@@ -156,6 +159,7 @@ void check_recording(const fs::path& path, const Settings& settings, const Recor
     if (std::ranges::count(known, extension_of(pattern)) == 0)
         throw ArgumentError(fmt::format("cannot record to {}: unknown extension '{}'; expected {}",
                                         path.string(), extension_of(pattern), known_kinds()));
+    encoding_for_recording(path, options.deep);
     if (!options.codec.empty())
         throw ArgumentError(
             fmt::format("cannot record {}: pictures have no codec, got '{}'", path.string(), options.codec));
