@@ -90,6 +90,40 @@ TEST(GroundTruth, HalfCoveredQuadIsHalfVisible) {
 }
 
 // A quad whose left half is outside of the picture: truncation one half, and the box reaches out.
+// A pane of 80 x 80 pixels that hides nothing: it is seen nowhere, and covers all that its texture leaves.
+TEST(GroundTruth, BlendedSurfacesAreWholeAmodally) {
+    auto image = std::make_shared<Image>(2, 1, 4, PixelType::u8);
+    const uint8_t codes[] = {255, 255, 255, 0, 255, 255, 255, 255};
+    std::ranges::copy(codes, image->pixels<uint8_t>().begin());
+    for (const bool textured : {false, true})
+        for (const bool alone : {false, true}) {
+            Material material;
+            material.opacity = 0.25f;
+            if (textured) {
+                material.base_color_texture.image = image;
+                material.base_color_texture.wrap_u = Wrap::clamp;
+                material.base_color_texture.filter = Filter::nearest;
+            }
+            Scene scene;
+            scene.show(moved(facing_square(1, material), {0, 0, 0.5}), "pane");
+            if (!alone) scene.show(facing_square(1), "back");
+            app::Session session = plain_session(scene, 200);
+            session.settings().camera.projection = Projection::orthographic;
+            session.settings().camera.ortho_height = 5.0;
+            look_from(session, Vec3d(0, 0, 5));
+            const GroundTruth truth = ground_truth(session, {"instance_id"}, with_instances({200, 200}));
+            const Instance& pane = named(truth, "pane");
+            EXPECT_EQ(pane.pixels_visible, 0);
+            EXPECT_EQ(pane.visible_fraction, 0);
+            EXPECT_EQ(pane.pixels_amodal, (textured ? 40 : 80) * 80) << "alone: " << alone;
+            EXPECT_EQ(pane.box_amodal.width, textured ? 40 : 80) << "alone: " << alone;
+            EXPECT_EQ(pane.box_amodal.x, textured ? 100 : 60) << "alone: " << alone;
+            if (!alone) {
+                EXPECT_EQ(named(truth, "back").pixels_visible, 80 * 80);
+            }
+        }
+}
+
 TEST(GroundTruth, TruncationAndTheBoxOutside) {
     Scene scene;
     scene.show(moved(facing_square(1), {-2.5, 0, 0}), "left");

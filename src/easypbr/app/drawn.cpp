@@ -102,6 +102,10 @@ std::vector<render::ScreenReach> Drawn::reaches() const {
     return renderer.reaches();
 }
 
+std::vector<bool> Drawn::blended() const {
+    return surface_renderer().blended();
+}
+
 const render::GBuffer& Drawn::targets() const {
     return surface_renderer().uploaded_targets();
 }

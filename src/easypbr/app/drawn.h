@@ -91,6 +91,8 @@ class Drawn {
                                   const std::function<bool(size_t object, int first_face)>& wanted) const;
     /// See render::Renderer::reaches().
     std::vector<render::ScreenReach> reaches() const;
+    /// See render::Renderer::blended().
+    std::vector<bool> blended() const;
     /// What layer() reads.
     const render::GBuffer& targets() const;
 

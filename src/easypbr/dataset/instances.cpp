@@ -279,6 +279,16 @@ void take_visible(Instance& instance) {
     instance.box_amodal = instance.box_visible;
 }
 
+/// Instances with a surface that may be seen through: it covers more than where it is seen.
+std::vector<bool> blended_instances(const std::vector<bool>& objects, const SceneSnapshot& scene,
+                                    const InstanceTable& table) {
+    std::vector<bool> instances(table.instances().size());
+    for (size_t o = 0; o < objects.size(); ++o)
+        for (size_t p = 0; objects[o] && p < std::max<size_t>(1, scene.objects[o].mesh->parts.size()); ++p)
+            instances[table.of(o, p)] = true;
+    return instances;
+}
+
 /// Instances whose reach no other's touches are seen whole, as long as they are inside of the picture.
 bool seen_whole(const std::vector<PixelBox>& reaches, size_t place, const app::LensMap& lens) {
     if (!lens.is_identity() || !contains(lens.size, reaches[place])) return false;
@@ -382,13 +392,14 @@ std::vector<Instance> annotate(const app::Drawn& drawn, const Surfaces& s, const
     std::vector<render::ScreenReach> beyond(instances.size());
     const std::vector<render::ScreenReach> of_objects = drawn.reaches();
     for (size_t o = 0; o < of_objects.size(); ++o) beyond[table.of(o, 0)].extend(of_objects[o]);
+    const std::vector<bool> blended = blended_instances(drawn.blended(), s.scene, table);
     std::vector<PixelBox> reaches;
     for (size_t k = 0; k < instances.size(); ++k)
         reaches.push_back(reach_of(instances[k], lens, camera, beyond[k]));
     for (size_t k = 0; k < instances.size(); ++k) {
         Instance& instance = instances[k];
         const PixelBox& area = reaches[k];
-        if (!amodal || seen_whole(reaches, k, lens)) {
+        if (!amodal || (!blended[k] && seen_whole(reaches, k, lens))) {
             take_visible(instance);
         } else {
             if (area.width > 0) count_alone(instance, area, drawn, s, table, k);

@@ -121,6 +121,21 @@ void add_lines(const Source& source, DrawList& list) {
     list.overlays[DrawMode::lines].push_back(std::move(item));
 }
 
+/// All items as surfaces; `set_mask` changes the material of blended ones.
+template <class SetMask>
+DrawList masked(const DrawList& list, SetMask&& set_mask) {
+    DrawList surfaces = list;
+    if (auto splats = surfaces.overlays.extract(DrawMode::splats)) surfaces.items.insert(std::move(splats));
+    for (auto& [kind, of_kind] : surfaces.items)
+        for (DrawItem& item : of_kind) {
+            item.layered = false;
+            if (item.alpha != AlphaMode::blend) continue;
+            item.alpha = AlphaMode::mask;
+            set_mask(item.material);
+        }
+    return surfaces;
+}
+
 }  // namespace
 
 std::span<const DrawItem> items_of(const ItemsByKind& items, DrawMode kind) {
@@ -177,16 +192,14 @@ DrawList DrawList::as_first_hits() const {
 }
 
 DrawList DrawList::as_surfaces() const {
-    DrawList surfaces = *this;
-    if (auto splats = surfaces.overlays.extract(DrawMode::splats)) surfaces.items.insert(std::move(splats));
-    for (auto& [kind, of_kind] : surfaces.items)
-        for (DrawItem& item : of_kind) {
-            item.layered = false;
-            if (item.alpha != AlphaMode::blend) continue;
-            item.alpha = AlphaMode::mask;
-            item.material.alpha_cutoff = 0.5f;
-        }
-    return surfaces;
+    return masked(*this, [](Material& blended) { blended.alpha_cutoff = 0.5f; });
+}
+
+DrawList DrawList::as_shapes() const {
+    return masked(*this, [](Material& blended) {
+        blended.opacity = 1;
+        blended.alpha_cutoff = 1e-6f;  // 8 bits of alpha are 0 or far more
+    });
 }
 
 DrawList DrawList::as_casters(bool splats) const {

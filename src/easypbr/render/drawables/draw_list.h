@@ -110,6 +110,9 @@ struct DrawList {
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
     /// surface is one where its opacity is at least one half, and so are splats together.
     DrawList as_surfaces() const;
+    /// The same with all of a blended surface, whatever its opacity, but for what the alpha of its texture or
+    /// its vertices cuts out altogether: what amodal masks are of.
+    DrawList as_shapes() const;
     /// What casts shadows and is met by rays: all surfaces that cast, and, with `splats`, those too, which
     /// weaken light by their opacity.
     DrawList as_casters(bool splats) const;

@@ -37,7 +37,17 @@ KeptSurfaces::KeptSurfaces(const SceneSnapshot& scene, DrawableScene drawable,
                            const ResolvedSettings& resolved, Vec2i size, const Material& textures,
                            const ShaderFiles& shader_files)
     : scene_(scene), drawable_(std::move(drawable)), resolved_(resolved), size_(size) {
-    list_ = draw_list(drawable_, resolved_.settings, textures, shader_files).as_surfaces();
+    const DrawList all = draw_list(drawable_, resolved_.settings, textures, shader_files);
+    list_ = all.as_surfaces();
+    shapes_ = all.as_shapes();
+    blended_.resize(drawable_.scene.objects.size());
+    for (const auto& [kind, items] : all.items)
+        for (const DrawItem& item : items)
+            if (item.alpha == AlphaMode::blend) blended_[place_of(item)] = true;
+}
+
+size_t KeptSurfaces::place_of(const DrawItem& item) const {
+    return size_t(item.object - drawable_.scene.objects.data());
 }
 
 Shot KeptSurfaces::shot() const {
@@ -90,9 +100,8 @@ SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) co
 
 std::vector<uint8_t> KeptSurfaces::coverage(Pipeline& pipeline, const PixelRect& area,
                                             const std::function<bool(size_t, int)>& wanted) const {
-    const SceneSnapshot::Object* first = drawable_.scene.objects.data();
-    const DrawList list = list_.without(
-        [&](const DrawItem& item) { return !wanted(size_t(item.object - first), item.part.first_face); });
+    const DrawList list =
+        shapes_.without([&](const DrawItem& item) { return !wanted(place_of(item), item.part.first_face); });
     Frame frame = make_frame(shot(), 0, resolved_.camera, Box3d(), true);
     frame.clip_from_view = crop(area, frame.size) * frame.clip_from_view;
     frame.size = {area.width, area.height};

@@ -29,15 +29,21 @@ class KeptSurfaces {
     /// See Renderer::reaches().
     std::vector<ScreenReach> reaches(Pipeline& pipeline) const;
 
+    /// See Renderer::blended().
+    const std::vector<bool>& blended() const { return blended_; }
+
     const std::vector<ElementSources>& sources() const { return drawable_.sources; }
 
   private:
     Shot shot() const;
+    /// That of its object in the snapshot.
+    size_t place_of(const DrawItem& item) const;
 
     SceneSnapshot scene_;
     DrawableScene drawable_;
     ResolvedSettings resolved_;
-    DrawList list_;  ///< its items point into drawable_
+    DrawList list_, shapes_;  ///< as surfaces and as shapes; their items point into drawable_
+    std::vector<bool> blended_;
     Vec2i size_;
 };
 

@@ -386,4 +386,9 @@ std::vector<ScreenReach> Renderer::reaches() {
     return kept_->reaches(pipeline_);
 }
 
+const std::vector<bool>& Renderer::blended() const {
+    if (!kept_) throw ArgumentError("blended: the last picture was drawn without surfaces");
+    return kept_->blended();
+}
+
 }  // namespace easypbr::render

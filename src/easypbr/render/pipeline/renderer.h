@@ -97,15 +97,18 @@ class Renderer {
     SurfaceFrame read_surfaces() const;
 
     /// Which pixel centres of a rectangle, inside the last picture or outside, some parts of objects would
-    /// cover if they were alone: 1 or 0, row by row. `wanted` is asked with the object's place in the
-    /// snapshot and the part's first face. The last picture was drawn with `surfaces`; what it left behind is
-    /// not changed.
+    /// cover if they were alone: 1 or 0, row by row. Blended ones count whatever their opacity. `wanted` is
+    /// asked with the object's place in the snapshot and the part's first face. The last picture was drawn
+    /// with `surfaces`; what it left behind is not changed.
     std::vector<uint8_t> coverage(const PixelRect& area,
                                   const std::function<bool(size_t object, int first_face)>& wanted);
 
     /// How far beyond its vertices each object of the snapshot may reach in the last picture, which was drawn
     /// with `surfaces`; of voxels beyond the cells of its vertices.
     std::vector<ScreenReach> reaches();
+
+    /// Which objects of the snapshot have a blended surface: pixels that cover it may see what is behind.
+    const std::vector<bool>& blended() const;
 
     /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
     /// the two.
