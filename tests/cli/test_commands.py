@@ -2,6 +2,7 @@
 import shapes
 import json
 import os
+import re
 import subprocess
 
 import numpy as np
@@ -153,6 +154,12 @@ def two_images(easypbr, tmp_path):
         linear = ((value / 255 + 0.055) / 1.055) ** 2.4
         exr.write(tmp_path / f"{name}.exr", np.full((2, 2, 3), linear, np.float32))
         easypbr("convert", f"{name}.exr", f"{name}.png")
+
+
+def test_help_names_layers_that_exist(easypbr, box):
+    text = " ".join(easypbr("render", "--help").stdout.split())
+    named = re.search(r"OUT_LAYER\.exr for each of ([\w, ]+), \.\.\.", text)[1].replace(" ", "")
+    easypbr("render", box, "-o", "a.png", "--size", "8x8", "--samples", "1", "--layers", named)
 
 
 def test_compare_equal_images(easypbr, two_images):

@@ -85,7 +85,7 @@ void declare_output(CLI::App& command, RenderOptions& options) {
         ->check(CLI::IsMember({8, 16}));
     command
         .add_option("--layers", options.layers,
-                    "Also write OUT_LAYER.exr for each of albedo, normal, depth, instance_id, ..., and "
+                    "Also write OUT_LAYER.exr for each of albedo, normal_world, depth, instance_id, ..., and "
                     "OUT_instances.json for instances")
         ->delimiter(',')
         ->allow_extra_args(false)
