@@ -3,7 +3,9 @@ import shapes
 import json
 import os
 import re
+import struct
 import subprocess
+import zlib
 
 import numpy as np
 import pytest
@@ -173,6 +175,26 @@ def test_compare_different_images(easypbr, two_images):
     assert done.stderr.startswith("easypbr: error: ")
     easypbr("compare", "a.png", "b.png", "--max-difference", "3")
     easypbr("compare", "a.png", "b.png", "--max-difference", "2.9", code=1)
+
+
+def write_pixel(path, kind, *codes):
+    """A PNG of one pixel: colour type and codes of 8 bits."""
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    header = struct.pack(">IIBBBBB", 1, 1, 8, kind, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
+                     + chunk(b"IDAT", zlib.compress(bytes((0, *codes)))) + chunk(b"IEND", b""))  # fmt: skip
+
+
+# Colour types: 2 RGB, 4 grey with alpha.
+def test_compare_sees_alpha_of_grey_pictures(easypbr, tmp_path):
+    write_pixel(tmp_path / "rgb.png", 2, 100, 100, 100)
+    for alpha in (255, 250):
+        write_pixel(tmp_path / "grey.png", 4, 100, alpha)
+        for pair in (("rgb.png", "grey.png"), ("grey.png", "rgb.png")):
+            done = easypbr("compare", *pair, code=int(alpha != 255))
+            assert done.stdout.startswith(f"max {255 - alpha},")
 
 
 def test_compare_refuses_other_sizes(easypbr, two_images, tmp_path):
