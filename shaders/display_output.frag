@@ -14,7 +14,7 @@ uniform vec2 u_size;
 uniform float u_exposure;
 uniform float u_sample_scale;   // of a sum: 1 / samples
 uniform vec4 u_background;      // linear display light, premultiplied by alpha
-uniform sampler2D u_background_image;
+uniform sampler2D u_background_image;  // linear display light, premultiplied
 uniform vec4 u_background_uv;   // scale and offset that cover the picture without distortion
 uniform sampler2D u_overlay;    // linear display light, premultiplied
 
@@ -34,8 +34,10 @@ void main() {
     vec4 source = textureLod(u_source, uv, 0.0);
     vec4 color = is_sum ? source * u_sample_scale : shown(source, uv);
     vec4 behind = u_background;
-    if (has_background_image)
-        behind = vec4(textureLod(u_background_image, uv * u_background_uv.xy + u_background_uv.zw, 0.0).rgb, 1.0);
+    if (has_background_image) {
+        vec4 texel = textureLod(u_background_image, uv * u_background_uv.xy + u_background_uv.zw, 0.0);
+        behind = texel + (1.0 - texel.a) * behind;
+    }
     color += (1.0 - color.a) * behind;
     // Files hold straight alpha.
     vec3 straight = color.a > 0.0 ? color.rgb * (1.0 / color.a) : vec3(0.0);

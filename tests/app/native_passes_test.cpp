@@ -229,7 +229,7 @@ TEST(NativePasses, SmoothsEdgesOf16Bits) {
     EXPECT_TRUE(session.context_info().version.empty());
 }
 
-// The driver filters codes of 8 bits, the CPU linear values of 16: at most one step.
+// Both filter linear floats, with weights of their own: at most one step.
 TEST(NativePasses, ShowsImagesBehindAsTheDriver) {
     if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
     Image image(37, 23, 3, PixelType::u8);

@@ -270,6 +270,48 @@ TEST_F(SessionFiles, ImageBackgroundCoversThePicture) {
     EXPECT_EQ(corner(), (std::vector<int>{255, 0, 0, 255}));
 }
 
+// A picture of one colour behind everything, as its corner shows it, in all encodings and with several
+// samples.
+TEST_F(SessionFiles, ImageBackgroundKeepsBitsRadianceAndAlpha) {
+    const auto corner = [&](const Image& behind, const char* name, int samples, Encoding encoding) {
+        io::save_image(behind, folder_ / name);
+        Session session = small_session();
+        session.settings().ground.mode = GroundMode::none;
+        session.settings().background.mode = BackgroundMode::image;
+        session.settings().background.color = Vec3(0, 0, 1);
+        session.settings().background.image = (folder_ / name).string();
+        const Image picture = session.render({std::nullopt, samples, encoding});
+        std::vector<double> values;
+        for (int c = 0; c < 4; ++c)
+            values.push_back(encoding == Encoding::scene_linear ? double(picture.at<float>(0, 0)[c])
+                             : encoding == Encoding::srgb16     ? double(picture.at<uint16_t>(0, 0)[c])
+                                                                : double(picture.at<uint8_t>(0, 0)[c]));
+        return values;
+    };
+    const auto expect_near = [](const std::vector<double>& values, const std::vector<double>& expected,
+                                double tolerance) {
+        for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(values[c], expected[c], tolerance) << "channel " << c;
+    };
+    Image fine(4, 4, 3, PixelType::u16), half(4, 4, 4, PixelType::u8);
+    const uint16_t codes[] = {12345, 23456, 34567};
+    const uint8_t red[] = {255, 0, 0, 51};
+    for (size_t i = 0; i < 16; ++i) {
+        std::ranges::copy(codes, fine.at<uint16_t>(int(i) % 4, int(i) / 4));
+        std::ranges::copy(red, half.at<uint8_t>(int(i) % 4, int(i) / 4));
+    }
+    for (const int samples : {1, 4}) {
+        // Decoded and encoded in floats, of 24 bits, by powers that are good to 20 bits: two codes of 16
+        // bits.
+        expect_near(corner(fine, "fine.png", samples, Encoding::srgb16), {12345, 23456, 34567, 65535}, 2);
+        const Image bright = constant_image(Vec3(4, 0.5f, 0.25f));
+        expect_near(corner(bright, "bright.exr", samples, Encoding::scene_linear), {4, 0.5, 0.25, 1}, 1e-6);
+        // sRGB of 0.5 and 0.25: 187.5 and 137.0, rounded.
+        expect_near(corner(bright, "bright.exr", samples, Encoding::srgb8), {255, 187.5, 137, 255}, 0.51);
+        // A fifth of red over blue.
+        expect_near(corner(half, "half.png", samples, Encoding::scene_linear), {0.2, 0, 0.8, 1}, 1e-6);
+    }
+}
+
 TEST_F(SessionFiles, LayersAreWrittenBesideThePicture) {
     Session session = small_session();
     const auto files = layers_to_files(session, folder_ / "out.png", {"depth", "normal_world"});

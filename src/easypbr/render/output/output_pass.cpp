@@ -1,10 +1,14 @@
 #include "easypbr/render/output/output_pass.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/gl/context.h"
 #include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/scene/resolve.h"
 
@@ -54,14 +58,14 @@ Vec4 covering_uv(const Image& image, const Frame& frame) {
     return {part.x(), part.y(), first.x(), first.y()};
 }
 
-void add_image(BackgroundImage& background, const Frame& frame, bool native, ShaderInputs& values) {
+void add_image(BackgroundImage& background, const Frame& frame, const Target& light, ShaderInputs& values) {
     values.define("BACKGROUND_IMAGE");
-    values.set("u_background_uv", covering_uv(*background.texture.image, frame));
-    if (native)
-        values.set("u_background_image", background.textures.host(background.texture, true));
-    else
-        values.set("u_background_image", background.textures.get(background.texture, true));
+    values.set("u_background_uv", covering_uv(*background.image(), frame));
+    values.set("u_background_image", light);
 }
+
+/// Longest side of a background image that native shaders read.
+constexpr int most_native_side = 1 << 15;
 
 void add_lit(const LitPicture& lit, const char* radiance, ShaderInputs& values) {
     if (lit.overlay) values.define("OVERLAY");
@@ -158,6 +162,19 @@ gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPic
 }
 
 }  // namespace
+
+const Target& BackgroundImage::light(int most_side) {
+    if (light_ && light_.size().maxCoeff() <= most_side) return light_;
+    Image light = with_channels(picture_to_linear_f32(*image_), 4);
+    if (const size_t replaced = replace_non_finite(light))
+        log_warning(fmt::format(
+            "background image '{}': {} values that are NaN or infinite were replaced by 0", name_, replaced));
+    while (std::max(light.width(), light.height()) > most_side) light = half_size(light);
+    light_ = Target(gl::Format::rgba32f, {light.width(), light.height()});
+    light_.write(light_.whole());
+    std::ranges::copy(light.bytes(), light_.pixels<std::byte>().begin());
+    return light_;
+}
 
 void OutputPass::begin(Vec2i size, Encoding encoding) {
     const gl::Format format = format_of(encoding);
@@ -281,7 +298,11 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, Backgro
     picture_.drawn();
     framebuffer().bind();
     if (background) {
-        add_image(*background, frame, false, values);
+        const Target& light = background->light(gl::Context::current().info().max_texture_size);
+        light.upload(transfers_);
+        light.release();
+        light.attachment().sampling(gl::Filtering::linear);
+        add_image(*background, frame, light, values);
     } else {
         const Vec4 code = background_code(frame, encoding_);
         const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
@@ -297,7 +318,7 @@ void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, Back
     const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
     const PixelRect area = background || is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
     ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
-    if (background) add_image(*background, frame, true, values);
+    if (background) add_image(*background, frame, background->light(most_native_side), values);
     picture_.write(picture_.whole());
     fill_around(picture_, area, background_code(frame, encoding_));
     display_.shade(values, {.target = &picture_, .area = area}, transfers_);

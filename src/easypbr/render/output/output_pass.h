@@ -2,8 +2,12 @@
 // single frames.
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "easypbr/core/image.h"
 #include "easypbr/gl/texture.h"
-#include "easypbr/gpu/texture_cache.h"
 #include "easypbr/render/denoise/radiance_mean.h"
 #include "easypbr/render/effects/bloom/glow.h"
 #include "easypbr/render/effects/effect.h"
@@ -15,10 +19,22 @@ namespace easypbr::render {
 
 using easypbr::Encoding;
 
-/// An image behind everything.
-struct BackgroundImage {
-    Texture texture;             ///< clamped
-    gpu::TextureCache textures;  ///< holds it, for the driver or for native shaders
+/// An image behind everything, shown as it is: neither exposure nor tone curve apply to it.
+class BackgroundImage {
+  public:
+    /// `name`: for messages.
+    BackgroundImage(std::shared_ptr<const Image> image, std::string name)
+        : image_(std::move(image)), name_(std::move(name)) {}
+
+    const std::shared_ptr<const Image>& image() const { return image_; }
+    /// Linear light, premultiplied by alpha; of half the size, or less, where a side is longer than
+    /// `most_side`.
+    const Target& light(int most_side);
+
+  private:
+    std::shared_ptr<const Image> image_;
+    std::string name_;
+    Target light_;
 };
 
 /// A picture whose radiance is in host memory alone is finished there, natively; any other by the driver.

@@ -328,11 +328,8 @@ void Renderer::evict_unused() {
 BackgroundImage* Renderer::background_image(const ResolvedSettings& resolved, const SettingsImages& images) {
     const BackgroundSettings& background = resolved.settings.background;
     if (background.mode != BackgroundMode::image || !images.background) return nullptr;
-    if (background_ && background_->texture.image == images.background) return background_.get();
-    background_ = std::make_unique<BackgroundImage>();
-    background_->texture.image = images.background;
-    background_->texture.path = background.image;
-    background_->texture.wrap_u = background_->texture.wrap_v = Wrap::clamp;
+    if (!background_ || background_->image() != images.background)
+        background_ = std::make_unique<BackgroundImage>(images.background, background.image);
     return background_.get();
 }
 
