@@ -68,12 +68,12 @@ TEST(Image, PicturesOfFloatsArePremultiplied) {
 }
 
 TEST(Image, TellsWhetherSomethingShinesThrough) {
-    EXPECT_TRUE(is_opaque(image_of<uint8_t>(1, 1, 3, PixelType::u8, {1, 2, 3})));
-    EXPECT_TRUE(is_opaque(image_of<uint8_t>(2, 1, 2, PixelType::u8, {1, 255, 3, 255})));
-    EXPECT_FALSE(is_opaque(image_of<uint8_t>(2, 1, 2, PixelType::u8, {1, 255, 3, 254})));
-    EXPECT_FALSE(is_opaque(image_of<uint16_t>(1, 1, 2, PixelType::u16, {1, 65534})));
-    EXPECT_TRUE(is_opaque(image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.9999f})));
-    EXPECT_FALSE(is_opaque(image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.99f})));
+    EXPECT_TRUE(is_fully_opaque(image_of<uint8_t>(1, 1, 3, PixelType::u8, {1, 2, 3})));
+    EXPECT_TRUE(is_fully_opaque(image_of<uint8_t>(2, 1, 2, PixelType::u8, {1, 255, 3, 255})));
+    EXPECT_FALSE(is_fully_opaque(image_of<uint8_t>(2, 1, 2, PixelType::u8, {1, 255, 3, 254})));
+    EXPECT_FALSE(is_fully_opaque(image_of<uint16_t>(1, 1, 2, PixelType::u16, {1, 65534})));
+    EXPECT_TRUE(is_fully_opaque(image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.9999f})));
+    EXPECT_FALSE(is_fully_opaque(image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.99f})));
 }
 
 TEST(Image, SurvivesTheWayToLinearAndBack) {

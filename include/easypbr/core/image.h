@@ -105,7 +105,7 @@ Image to_u8(const Image& image);
 Image to_linear_f32(const Image& image);
 
 /// Whether nothing shines through: there is no alpha, or it is 1 everywhere (f32: rounds to it in 8 bits).
-bool is_opaque(const Image& image);
+bool is_fully_opaque(const Image& image);
 
 /// f32 colour that is premultiplied by alpha (2nd or 4th channel), as pictures hold it, divided by alpha; 0
 /// where alpha is 0. Throws ArgumentError unless the pixels are f32.

@@ -134,7 +134,7 @@ Image to_linear_f32(const Image& image) {
     return out;
 }
 
-bool is_opaque(const Image& image) {
+bool is_fully_opaque(const Image& image) {
     switch (image.type()) {
         case PixelType::u8:
             return has_alpha_from<uint8_t>(image, 255);

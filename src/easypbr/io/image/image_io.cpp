@@ -68,7 +68,7 @@ std::vector<std::byte> encode_image(const Image& image, const std::filesystem::p
     const std::string extension = extension_of(path);
     if (extension == "png") return encode_png(image.type() == PixelType::f32 ? picture_to_u8(image) : image);
     if (extension == "exr") return encode_exr(picture_to_linear_f32(image));
-    if (!is_opaque(image))
+    if (!is_fully_opaque(image))
         throw ArgumentError(
             fmt::format("cannot write {}: {}; write a PNG or EXR", path.string(), lack_of_alpha(extension)));
     return extension == "hdr" ? encode_hdr(to_linear_f32(image)) : encode_jpeg(to_u8(image));
