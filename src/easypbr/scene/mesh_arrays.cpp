@@ -44,22 +44,14 @@ void replace_arrays(MeshData& mesh, const MeshData& arrays) {
 std::vector<uint64_t> array_revisions(const MeshData& mesh) {
     const SplatArrays& splats = mesh.splats;
     std::vector<uint64_t> all{
-        mesh.V.revision(),
-        mesh.N.revision(),
-        mesh.C.revision(),
-        mesh.UV.revision(),
-        mesh.uv_tangents.revision(),
-        mesh.T.revision(),
-        mesh.B.revision(),
-        mesh.F.revision(),
-        mesh.E.revision(),
-        mesh.L.revision(),
-        mesh.I.revision(),
-        splats.scales.revision(),
-        splats.rotations.revision(),
-        splats.opacities.revision(),
-        splats.sh.revision(),
-        mesh.source_vertex.revision(),
+        mesh.V.revision(),           mesh.N.revision(),
+        mesh.C.revision(),           mesh.UV.revision(),
+        mesh.uv_tangents.revision(), mesh.T.revision(),
+        mesh.B.revision(),           mesh.F.revision(),
+        mesh.E.revision(),           mesh.L.revision(),
+        mesh.I.revision(),           splats.scales.revision(),
+        splats.rotations.revision(), splats.opacities.revision(),
+        splats.sh.revision(),        mesh.source_vertex.revision(),
         mesh.source_face.revision(),
     };
     for (const ScalarArray& scalar : mesh.scalars) all.push_back(scalar.values.revision());
