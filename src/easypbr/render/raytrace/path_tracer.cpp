@@ -124,9 +124,22 @@ struct PathTracer::Escaped {
         uint32_t index;
         Scattering scattered;
     };
+    void add(const Vec3& direction, float density, const Path& path) {
+        directions.push_back(direction);
+        densities.push_back(density);
+        paths.push_back(path);
+    }
+    void add(const Escaped& from, size_t i) { add(from.directions[i], from.densities[i], from.paths[i]); }
+
     std::vector<Vec3> directions;
     std::vector<float> densities;
     std::vector<Path> paths;
+};
+
+/// Paths that have met a ground that catches shadows, which ends them.
+struct PathTracer::Caught {
+    std::vector<RaySegment> upwards;  ///< that look whether the sky is seen from there
+    Escaped paths;
 };
 
 struct PathTracer::Batches {
@@ -177,6 +190,18 @@ void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const
         const float weight = density / (density + (1 - emitter_part_) * skies[i].density);
         const Escaped::Path& path = paths.paths[i];
         add(path.index, path.throughput.cwiseProduct(skies[i].radiance * weight), path.scattered, radiance);
+    }
+}
+
+void PathTracer::add_caught(const Caught& caught, PathRadiance& radiance) const {
+    const std::vector<uint8_t> blocked = scene_->blocked(caught.upwards, Neighbours::scattered);
+    Escaped open;
+    for (size_t i = 0; i < blocked.size(); ++i)
+        if (!blocked[i]) open.add(caught.paths, i);
+    const std::vector<SkySampler::Sample> skies = sky_.seen(open.directions, open.densities);
+    for (size_t i = 0; i < skies.size(); ++i) {
+        const Escaped::Path& path = open.paths[i];
+        add(path.index, path.throughput.cwiseProduct(skies[i].radiance), path.scattered, radiance);
     }
 }
 
@@ -340,6 +365,8 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
     escaped.directions.reserve(batch.count);
     escaped.densities.reserve(batch.count);
     escaped.paths.reserve(batch.count);
+    Caught caught;
+    const bool catches = scene_->ground() && scene_->ground()->shadow_catcher;
     for (size_t i = 0; i < batch.count; ++i) {
         PathState state = batch.state[i];
         const Scattering before = state.scattered;
@@ -352,32 +379,24 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
                                  if (hit && hit->distance < distance) return;
                                  add(state.index, state.throughput.cwiseProduct(light), before, radiance);
                              });
-        if (hit) {
-            absorb(hit->distance, state);
-            hits.push_back({state, *hit, direction, scattered.density[i],
-                            hit->distance * float(scene_->unit()) * ray_widening});
-        } else {
-            escaped.directions.push_back(direction);
-            escaped.densities.push_back(scattered.density[i]);
-            escaped.paths.push_back({state.throughput, state.index, before});
+        if (!hit) {
+            escaped.add(direction, scattered.density[i], {state.throughput, state.index, before});
+            continue;
         }
+        absorb(hit->distance, state);
+        if (hit->surface < 0 && catches) {
+            const Vec2 u = state.sampler.pair(depth, emitter_point);
+            caught.upwards.push_back({RayScene::off_surface(hit->position, hit->normal),
+                                      cosine_direction(RayFrame(hit->normal), u),
+                                      std::numeric_limits<float>::infinity()});
+            caught.paths.add(direction, scattered.density[i], {state.throughput, state.index, before});
+            continue;
+        }
+        hits.push_back({state, *hit, direction, scattered.density[i],
+                        hit->distance * float(scene_->unit()) * ray_widening});
     }
     add_escaped(escaped, radiance);
-}
-
-Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
-    const RayHit& hit = at.hit;
-    const Vec3 up = cosine_direction(RayFrame(hit.normal), u);
-    const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up,
-                                       std::numeric_limits<float>::infinity());
-    return open ? sky_.seen(at.direction, at.density).radiance : Vec3(Vec3::Zero());
-}
-
-bool PathTracer::is_caught(const Hit& hit, uint32_t depth, PathRadiance& radiance) const {
-    if (hit.hit.surface >= 0 || !scene_->ground()->shadow_catcher) return false;
-    const Vec3 sky = caught_sky(hit, hit.state.sampler.pair(depth, emitter_point));
-    add(hit.state.index, hit.state.throughput.cwiseProduct(sky), hit.state.scattered, radiance);
-    return true;
+    add_caught(caught, radiance);
 }
 
 namespace {
@@ -426,7 +445,6 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
     Batches next{PathBatch(hits.size()), PathBatch(with_extensions ? hits.size() : 0, with_extensions)};
     for (size_t i = 0; i < hits.size(); ++i) {
         const Hit& hit = hits[sorted[i]];
-        if (is_caught(hit, depth, radiance)) continue;
         const Vec3 emission =
             hit.state.throughput.cwiseProduct(shown(surfaces, i, hit.state)) * weights[sorted[i]];
         const bool extended = is_extended_kind(surfaces.kind[i]),

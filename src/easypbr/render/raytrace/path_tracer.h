@@ -47,6 +47,7 @@ class PathTracer {
   private:
     struct Scattered;
     struct Escaped;
+    struct Caught;
     /// Paths at surfaces without extensions and with them.
     struct Batches;
     /// Where rays in a direction start, which may go through the surface.
@@ -79,13 +80,12 @@ class PathTracer {
     void absorb(float distance, PathState& state) const;
     /// The paths that go on from hits.
     Batches arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const;
-    bool is_caught(const Hit& hit, uint32_t depth, PathRadiance& radiance) const;
     /// Part of what surfaces emit that paths add which have met them in sampled directions.
     std::vector<float> emission_weights(std::span<const Hit> hits) const;
     /// Adds what the sky sends to paths that have left the scene in sampled directions.
     void add_escaped(const Escaped& paths, PathRadiance& radiance) const;
-    /// What a ground that catches shadows shows of the sky behind it.
-    Vec3 caught_sky(const Hit& at, const Vec2& u) const;
+    /// Adds what a ground that catches shadows shows of the sky behind it.
+    void add_caught(const Caught& caught, PathRadiance& radiance) const;
     /// Adds what a path has found at a surface.
     void add(uint32_t index, const Vec3& found, Scattering scattered, PathRadiance& to) const;
 
