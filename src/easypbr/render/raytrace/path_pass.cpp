@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -16,8 +17,9 @@
 namespace easypbr::render {
 namespace {
 
-/// Pixels whose paths are traced together.
-constexpr int block_width = 64, block_height = 16;
+/// Pixels whose paths are traced together. Small pictures have lower blocks, for many threads to share.
+constexpr int block_width = 64, block_height = 64, low_block_height = 16;
+constexpr int small_picture = 512 * 512;
 
 bool is_catcher(uint8_t kind) {
     return kind == uint8_t(SurfaceKind::ground_catcher);
@@ -101,7 +103,12 @@ struct PathPass::Pixels {
           emission(emission_),
           radiance(targets.radiance),
           caught(starts.caught ? *starts.caught : targets.depth),
-          rays(camera_rays(frame, scene)) {}
+          rays(camera_rays(frame, scene)) {
+        const PathSampler::Order order(uint32_t(frame.sample_count));
+        for (int x = 0; x < frame.size.x(); ++x)
+            columns.push_back(order.column(uint32_t(frame.origin.x() + x)));
+        for (int y = 0; y < frame.size.y(); ++y) rows.push_back(order.row(uint32_t(frame.origin.y() + y)));
+    }
 
     /// Neighbours take turns, by their place in the whole image.
     int turn_of(int x, int y) const {
@@ -115,10 +122,8 @@ struct PathPass::Pixels {
     }
     /// Of a pixel's path; `index` is that of its radiance.
     PathState state_of(int x, int y, uint32_t index) const {
-        const Vec2i pixel = frame.origin + Vec2i(x, y);
         PathState state;
-        state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
-                                    uint32_t(frame.sample_count));
+        state.sampler = PathSampler(columns[size_t(x)], rows[size_t(y)], uint32_t(frame.sample_index));
         state.index = index;
         return state;
     }
@@ -133,6 +138,7 @@ struct PathPass::Pixels {
     HeldPixels<Vec4> emission, radiance;
     HeldPixels<float> caught;  ///< of a shadow catcher
     const native::CameraRays rays;
+    std::vector<PathSampler::Axis> columns, rows;
 };
 
 /// Pixels whose paths start at the same kind of surface, and what the G-buffer holds there.
@@ -234,7 +240,8 @@ void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Read&& 
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
-    Block lit, caught, extended;
+    const auto blocks = std::make_unique_for_overwrite<std::array<Block, 3>>();  // too large for stacks
+    auto& [lit, caught, extended] = *blocks;
     const auto sort = [&](int x, int y, uint32_t index, uint8_t kind, CaughtTile& of_tile) {
         if (kind == uint8_t(SurfaceKind::extended))
             extended.add(pixels, x, y, index);
@@ -382,12 +389,14 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     static_assert(side % FireflyFilter::cell == 0);
     const int left = area.x / side * side, top = area.y / side * side;
     const int right = area.x + area.width, bottom = area.y + area.height;
+    const int height =
+        frame.size.x() * int64_t(frame.size.y()) < small_picture ? low_block_height : block_height;
     const int columns = (right - left + block_width - 1) / block_width,
-              rows = (bottom - top + block_height - 1) / block_height;
+              rows = (bottom - top + height - 1) / height;
     fireflies_.begin_frame(frame.size, most_spread(frame));
     parallel_for(size_t(std::max(0, columns * rows)), 1, [&](size_t i) {
-        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * block_height;
-        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(block_height, bottom - y)});
+        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * height;
+        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(height, bottom - y)});
     });
     spread_fireflies(pixels);
 }

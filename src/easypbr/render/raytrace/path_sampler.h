@@ -36,17 +36,37 @@ class PathSampler {
         color_channel
     };
 
+    /// What a pixel's column or row adds to its numbers.
+    struct Axis {
+        uint32_t reversed_order;  ///< in the Z-order, the bits reversed
+        uint32_t square;          ///< of pixels that share a sequence
+    };
+    /// The order in which the pixels of a picture are visited, of `samples` for each at most.
+    class Order {
+      public:
+        explicit Order(uint32_t samples) : bits_(uint32_t(std::bit_width(std::max(samples, 1u) - 1))) {}
+
+        Axis column(uint32_t x) const { return axis(x, 0); }
+        Axis row(uint32_t y) const { return axis(y, 1); }
+
+      private:
+        Axis axis(uint32_t at, uint32_t shift) const {
+            // As large a square of pixels as 32 bits allow; the next ones have other sequences.
+            const uint32_t side = (32 - std::min(bits_, 16u)) / 2;
+            const uint32_t inside = at & ((1u << side) - 1);
+            return {native::reversed_bits(spread_bits(inside) << shift << bits_), at >> side};
+        }
+
+        uint32_t bits_;  ///< of a sample's number
+    };
+
     PathSampler() = default;
+    PathSampler(const Axis& column, const Axis& row, uint32_t sample)
+        : seed_(pcg_hash(column.square + pcg_hash(row.square))),
+          reversed_sample_(column.reversed_order | row.reversed_order | native::reversed_bits(sample)) {}
     /// The pixel is in the whole picture; `samples`: how many it gets at most.
-    PathSampler(uint32_t x, uint32_t y, uint32_t sample, uint32_t samples) {
-        const auto bits = uint32_t(std::bit_width(std::max(samples, 1u) - 1));
-        // As large a square of pixels as 32 bits allow; the next ones have other sequences.
-        const uint32_t side = (32 - std::min(bits, 16u)) / 2;
-        const uint32_t inside = (1u << side) - 1;
-        reversed_sample_ =
-            native::reversed_bits((spread_bits(x & inside) | spread_bits(y & inside) << 1) << bits | sample);
-        seed_ = pcg_hash((x >> side) + pcg_hash(y >> side));
-    }
+    PathSampler(uint32_t x, uint32_t y, uint32_t sample, uint32_t samples)
+        : PathSampler(Order(samples).column(x), Order(samples).row(y), sample) {}
 
     /// In [0, 1)^2, of a pair of dimensions of the vertex `depth`.
     Vec2 pair(uint32_t depth, uint32_t pair) const {
