@@ -4,17 +4,18 @@
 uniform sampler2D u_radiance;
 uniform sampler2D u_depth_target;
 uniform vec2 u_size;
+uniform float u_light_scale;  // see render/frame/half_light.h
 
-layout(location = 0) out vec4 o_light;      // as GBuffer::radiance
+layout(location = 0) out vec4 o_light;      // as GBuffer::radiance, divided by u_light_scale
 layout(location = 1) out float o_confusion;  // pixels of full resolution
 
 void main() {
     vec2 corner = floor(gl_FragCoord.xy) * 2.0 + 0.5;
-    vec4 sum = vec4(0.0);
+    vec4 sum = vec4(0.0), part = vec4(vec3(1.0 / u_light_scale), 1.0);
     float depth = 0.0;
     for (int i = 0; i < 4; ++i) {
         vec2 uv = min(corner + vec2(float(i & 1), float(i >> 1)), u_size - 0.5) / u_size;
-        sum += min(textureLod(u_radiance, uv, 0.0), 60000.0);
+        sum += min(textureLod(u_radiance, uv, 0.0) * part, 60000.0);
         depth = max(depth, textureLod(u_depth_target, uv, 0.0).r);
     }
     o_light = sum * 0.25;

@@ -12,7 +12,8 @@ uniform samplerCube u_irradiance;
 uniform float u_last_level;
 uniform float u_env_intensity;
 uniform float u_lobe_slope;  // of the facet that this frame reflects in, in units of alpha
-// See render/raytrace/ray_pass.h.
+// See render/raytrace/traced_light.h.
+uniform float u_traced_scale;  // of indirect light
 uniform sampler2D u_sky_visibility;
 uniform sampler2D u_indirect_diffuse;
 uniform sampler2D u_indirect_specular;
@@ -52,10 +53,12 @@ vec3 specular_visibility(float n_dot_v, float alpha, float visibility, vec3 f0) 
 
 vec3 traced(sampler2D target) { return texelFetch(target, ivec2(gl_FragCoord.xy), 0).rgb; }
 
+vec3 indirect_diffuse() { return u_traced_scale * traced(u_indirect_diffuse); }
+
 // Irradiance divided by pi.
 vec3 diffuse_light(vec3 normal, float visibility, vec3 albedo) {
     vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
-    if (has_traced_light) sky = sky * traced(u_sky_visibility) + traced(u_indirect_diffuse);
+    if (has_traced_light) sky = sky * traced(u_sky_visibility) + indirect_diffuse();
     return sky * diffuse_visibility(visibility, albedo);
 }
 
@@ -64,7 +67,7 @@ vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec
     lobe *= u_env_intensity;
     if (has_traced_light) {
         vec4 scene = texelFetch(u_indirect_specular, ivec2(gl_FragCoord.xy), 0);
-        lobe = lobe * (1.0 - scene.a) + scene.rgb;
+        lobe = lobe * (1.0 - scene.a) + u_traced_scale * scene.rgb;
     }
     return lobe * specular_visibility(n_dot_v, alpha, visibility, f0);
 }
@@ -72,6 +75,6 @@ vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec
 // Average radiance in the lobe of the sheen, which is as wide as the sky.
 vec3 sheen_light(vec3 lobe, float visibility) {
     lobe *= u_env_intensity;
-    if (has_traced_light) lobe = lobe * traced(u_sky_visibility) + traced(u_indirect_diffuse);
+    if (has_traced_light) lobe = lobe * traced(u_sky_visibility) + indirect_diffuse();
     return lobe * visibility;
 }

@@ -53,6 +53,21 @@ TEST(Prefilter, KeepsAConstant) {
     expect_constant(maps.irradiance);
 }
 
+// Halves hold 2^-14 to 65504: a power of two brings what is beyond into the range, without a rounding.
+TEST(Prefilter, ScalesWhatHalvesDoNotHold) {
+    const auto maps_of = [](float radiance) {
+        return prefilter(environment_of(64, [=](const Vec3&) { return Vec3::Constant(radiance); }));
+    };
+    const PrefilteredEnvironment usual = maps_of(0.7f);
+    EXPECT_EQ(usual.scale, 1);
+    for (const float factor : {0x1p-30f, 0x1p30f}) {
+        const PrefilteredEnvironment maps = maps_of(0.7f * factor);
+        EXPECT_EQ(std::exp2(std::round(std::log2(maps.scale))), maps.scale);
+        for (size_t i = 0; i < maps.irradiance.size(); i += 4)
+            ASSERT_NEAR(value(maps.irradiance[i]) * maps.scale, 0.7f * factor, 0.0005f * factor);
+    }
+}
+
 // L = 1 + k.w gives E / pi = 1 + (2/3) k.n exactly.
 TEST(Prefilter, IrradianceOfALinearEnvironment) {
     const Vec3 k(0.3f, -0.5f, 0.2f);

@@ -25,23 +25,24 @@ gl::Texture cube_texture(const std::vector<const std::vector<uint16_t>*>& levels
     return texture;
 }
 
-std::vector<uint16_t> halves_of(const Image& image) {
+std::vector<uint16_t> halves_of(const Image& image, float scale) {
+    const float inverse = 1 / scale;
     std::vector<uint16_t> halves(image.pixel_count() * 4);
     parallel_for(image.pixel_count(), 1 << 14, [&](size_t i) {
         const float* p = image.pixels<float>().data() + i * 3;
         for (int c = 0; c < 3; ++c)
-            halves[i * 4 + c] = Eigen::half_impl::float_to_half_rtne(std::min(p[c], 65504.0f)).x;
+            halves[i * 4 + c] = Eigen::half_impl::float_to_half_rtne(p[c] * inverse).x;
         halves[i * 4 + 3] = 0x3c00;
     });
     return halves;
 }
 
-gl::Texture equirect_texture(const Image& image) {
+gl::Texture equirect_texture(const Image& image, float scale) {
     const int levels = gl::full_levels(image.width(), image.height());
     gl::Texture texture(gl::Format::rgba16f, image.width(), image.height(), levels);
     Image level = image;
     for (int i = 0; i < levels; ++i) {
-        const std::vector<uint16_t> halves = halves_of(level);
+        const std::vector<uint16_t> halves = halves_of(level, scale);
         texture.upload(std::as_bytes(std::span(halves)), i);
         if (i + 1 < levels) level = half_size(level);
     }
@@ -108,6 +109,7 @@ void EnvironmentMaps::prepare(const Environment& environment, const Environment&
     }
     if (!seen.empty() && (seen_.empty() || seen_.hash() != seen.hash())) {
         seen_ = seen;
+        seen_scale_ = 0;
         equirect_ = gl::Texture();
         host_equirect_ = {};
     }
@@ -116,6 +118,15 @@ void EnvironmentMaps::prepare(const Environment& environment, const Environment&
 const PrefilteredEnvironment& EnvironmentMaps::maps() const {
     if (maps_.radiance.empty()) maps_ = prefilter_cached(environment_);
     return maps_;
+}
+
+float EnvironmentMaps::scale() const {
+    return maps().scale;
+}
+
+float EnvironmentMaps::seen_scale() const {
+    if (seen_scale_ == 0) seen_scale_ = half_scale(seen_.image());
+    return seen_scale_;
 }
 
 const gl::Texture& EnvironmentMaps::prefiltered() const {
@@ -130,7 +141,7 @@ const gl::Texture& EnvironmentMaps::irradiance() const {
 }
 
 const gl::Texture& EnvironmentMaps::equirect() const {
-    if (!equirect_) equirect_ = equirect_texture(seen_.image());
+    if (!equirect_) equirect_ = equirect_texture(seen_.image(), seen_scale());
     return equirect_;
 }
 
@@ -147,7 +158,7 @@ const native::Cube& EnvironmentMaps::host_irradiance() const {
 }
 
 const native::Panorama& EnvironmentMaps::host_equirect() const {
-    if (host_equirect_.texels.empty()) host_equirect_ = host_panorama(seen_.image());
+    if (host_equirect_.texels.empty()) host_equirect_ = host_panorama(seen_.image(), seen_scale());
     return host_equirect_.panorama;
 }
 
@@ -167,7 +178,7 @@ EnvironmentMaps::HostCube EnvironmentMaps::host_cube(const std::vector<const std
     return host;
 }
 
-EnvironmentMaps::HostPanorama EnvironmentMaps::host_panorama(const Image& image) {
+EnvironmentMaps::HostPanorama EnvironmentMaps::host_panorama(const Image& image, float scale) {
     HostPanorama host;
     Image level = image;
     const int levels =
@@ -176,7 +187,7 @@ EnvironmentMaps::HostPanorama EnvironmentMaps::host_panorama(const Image& image)
         host.panorama.width[i] = level.width();
         host.panorama.height[i] = level.height();
         host.panorama.offsets[i] = host.texels.size() / 4;
-        add_with_first_column(halves_of(level), level.width(), host.texels);
+        add_with_first_column(halves_of(level, scale), level.width(), host.texels);
         if (i + 1 < levels) level = half_size(level);
     }
     host.panorama.levels = levels;

@@ -23,6 +23,9 @@ class EnvironmentMaps {
     const gl::Texture& irradiance() const;
     /// The picture itself with all mip levels, once prepare() was given one.
     const gl::Texture& equirect() const;
+    /// What the texels of prefiltered() and irradiance(), and of equirect(), are to be multiplied by.
+    float scale() const;
+    float seen_scale() const;
     int equirect_width() const { return seen_.image().width(); }
     float last_level() const;
 
@@ -41,12 +44,13 @@ class EnvironmentMaps {
         native::Panorama panorama;
     };
     static HostCube host_cube(const std::vector<const std::vector<uint16_t>*>& levels, int size);
-    static HostPanorama host_panorama(const Image& image);
+    static HostPanorama host_panorama(const Image& image, float scale);
 
     const PrefilteredEnvironment& maps() const;
 
     Environment environment_, seen_;
     mutable PrefilteredEnvironment maps_;
+    mutable float seen_scale_ = 0;  ///< 0: not known yet
     mutable gl::Texture prefiltered_, irradiance_, equirect_;
     mutable HostCube host_prefiltered_, host_irradiance_;
     mutable HostPanorama host_equirect_;

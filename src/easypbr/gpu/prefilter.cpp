@@ -13,16 +13,17 @@ namespace easypbr::gpu {
 namespace {
 
 /// Raise it when anything here changes what is computed.
-constexpr const char* cache_version = "env6-";
+constexpr const char* cache_version = "env7-";
 
 constexpr float largest_half = 65504.0f;
+/// Halves below 2^-14 are read as zero: where the brightest is less than this, all are raised.
+constexpr float least_brightest = 0x1p-6f;
 
-uint16_t to_half(float value) {
-    return Eigen::half_impl::float_to_half_rtne(std::clamp(value, 0.0f, largest_half)).x;
-}
-
-void append_halves(const Vec4& value, uint16_t* to) {
-    for (int c = 0; c < 4; ++c) to[c] = to_half(value[c]);
+/// Divides by a power of two: `inverse` is what it is multiplied by.
+void append_halves(const Vec4& value, float inverse, uint16_t* to) {
+    for (int c = 0; c < 3; ++c)
+        to[c] = Eigen::half_impl::float_to_half_rtne(std::clamp(value[c] * inverse, 0.0f, largest_half)).x;
+    to[3] = Eigen::half_impl::float_to_half_rtne(value[3]).x;
 }
 
 int level_size(int level) {
@@ -84,7 +85,7 @@ Vec4 sample_chain(const std::vector<CubeMap>& chain, const Vec3& direction, floa
     return chain[low].sample(direction) * (1 - f) + chain[high].sample(direction) * f;
 }
 
-std::vector<uint16_t> filter_level(const std::vector<CubeMap>& chain, int level) {
+std::vector<uint16_t> filter_level(const std::vector<CubeMap>& chain, int level, float inverse) {
     const int size = level_size(level);
     // Fewer texels have wider lobes and get more samples: about the same work for each level.
     const std::vector<LobeSample> lobe = lobe_samples(roughness_of_level(level), 64 << (level - 1));
@@ -100,24 +101,25 @@ std::vector<uint16_t> filter_level(const std::vector<CubeMap>& chain, int level)
                 sum += sample.weight * sample_chain(chain, frame * sample.light, sample.level);
                 weight += sample.weight;
             }
-            append_halves(sum / weight, &halves[(row * size + x) * 4]);
+            append_halves(sum / weight, inverse, &halves[(row * size + x) * 4]);
         }
     });
     return halves;
 }
 
-std::vector<uint16_t> copy_level(const CubeMap& cube) {
+std::vector<uint16_t> copy_level(const CubeMap& cube, float inverse) {
     const int size = cube.size();
     std::vector<uint16_t> halves(size_t(6) * size * size * 4);
     parallel_for(size_t(6) * size, 16, [&](size_t row) {
         for (int x = 0; x < size; ++x)
-            append_halves(cube.at(int(row) / size, x, int(row) % size), &halves[(row * size + x) * 4]);
+            append_halves(cube.at(int(row) / size, x, int(row) % size), inverse,
+                          &halves[(row * size + x) * 4]);
     });
     return halves;
 }
 
 /// Exact cosine convolution of the 32x32 level, each texel weighted by its solid angle.
-std::vector<uint16_t> convolve_irradiance(const CubeMap& source) {
+std::vector<uint16_t> convolve_irradiance(const CubeMap& source, float inverse) {
     struct Emitter {
         Vec3 direction;
         float solid_angle;
@@ -146,7 +148,7 @@ std::vector<uint16_t> convolve_irradiance(const CubeMap& source) {
         }
         // The weights sum to pi up to the coarseness of the texels: a constant environment must stay
         // constant.
-        append_halves(sum / sum.w(), &halves[i * 4]);
+        append_halves(sum / sum.w(), inverse, &halves[i * 4]);
     });
     return halves;
 }
@@ -159,6 +161,8 @@ std::vector<std::byte> serialize(const PrefilteredEnvironment& environment) {
     };
     for (const auto& level : environment.radiance) append(level);
     append(environment.irradiance);
+    const auto scale = std::as_bytes(std::span(&environment.scale, 1));
+    blob.insert(blob.end(), scale.begin(), scale.end());
     return blob;
 }
 
@@ -174,7 +178,10 @@ bool deserialize(std::span<const std::byte> blob, PrefilteredEnvironment& enviro
     environment.radiance.resize(PrefilteredEnvironment::level_count);
     for (int level = 0; level < PrefilteredEnvironment::level_count; ++level)
         if (!take(level_size(level), environment.radiance[size_t(level)])) return false;
-    return take(PrefilteredEnvironment::irradiance_size, environment.irradiance) && blob.empty();
+    if (!take(PrefilteredEnvironment::irradiance_size, environment.irradiance)) return false;
+    if (blob.size() != sizeof environment.scale) return false;
+    std::memcpy(&environment.scale, blob.data(), blob.size());
+    return true;
 }
 
 }  // namespace
@@ -183,17 +190,32 @@ float roughness_of_level(int level) {
     return 1.0f - std::sqrt(1.0f - float(level) / float(PrefilteredEnvironment::level_count - 1));
 }
 
+float half_scale(const Image& image) {
+    const std::span<const float> values = image.pixels<float>();
+    constexpr size_t grain = size_t(1) << 18;
+    std::vector<float> brightest_of((values.size() + grain - 1) / grain);
+    parallel_chunks(values.size(), grain, [&](size_t begin, size_t end) {
+        brightest_of[begin / grain] = std::ranges::max(values.subspan(begin, end - begin));
+    });
+    const float brightest = brightest_of.empty() ? 0 : std::ranges::max(brightest_of);
+    if (!(brightest > 0) || (brightest >= least_brightest && brightest <= largest_half)) return 1;
+    const int exponent = std::ilogb(brightest);
+    return std::ldexp(1.0f, brightest > largest_half ? exponent - 14 : exponent);
+}
+
 PrefilteredEnvironment prefilter(const Environment& environment) {
     std::vector<CubeMap> chain;
     chain.push_back(CubeMap::from_equirect(environment.image(), PrefilteredEnvironment::base_size));
     while (chain.back().size() > 2) chain.push_back(chain.back().half());
     PrefilteredEnvironment result;
-    result.radiance.push_back(copy_level(chain[0]));
+    result.scale = half_scale(environment.image());
+    const float inverse = 1 / result.scale;
+    result.radiance.push_back(copy_level(chain[0], inverse));
     for (int level = 1; level < PrefilteredEnvironment::level_count; ++level)
-        result.radiance.push_back(filter_level(chain, level));
+        result.radiance.push_back(filter_level(chain, level, inverse));
     const auto small =
         std::find_if(chain.begin(), chain.end(), [](const CubeMap& c) { return c.size() == 32; });
-    result.irradiance = convolve_irradiance(*small);
+    result.irradiance = convolve_irradiance(*small, inverse);
     return result;
 }
 

@@ -9,8 +9,12 @@
 
 namespace easypbr::gpu {
 
-/// Radiance prefiltered for GGX and irradiance, as cube maps of halves (RGBA). Faces in OpenGL's order (+x -x
-/// +y -y +z -z), rows as OpenGL stores them.
+/// What an image is divided by before it is stored as halves: 1, and another power of two where its brightest
+/// value is beyond their range or near its lower end.
+float half_scale(const Image& image);
+
+/// Radiance prefiltered for GGX and irradiance, both divided by `scale`, as cube maps of halves (RGBA). Faces
+/// in OpenGL's order (+x -x +y -y +z -z), rows as OpenGL stores them.
 struct PrefilteredEnvironment {
     static constexpr int base_size = 256;  ///< side of level 0
     static constexpr int level_count = 6;  ///< 256 .. 8
@@ -18,6 +22,7 @@ struct PrefilteredEnvironment {
 
     std::vector<std::vector<uint16_t>> radiance;  ///< per level: 6 faces x size x size x 4
     std::vector<uint16_t> irradiance;             ///< 6 x 16 x 16 x 4, irradiance / pi
+    float scale = 1;                              ///< half_scale() of the environment's image
 };
 
 /// Perceptual roughness of a level: the inverse of lod = r (2 - r) (level_count - 1), which gives smooth

@@ -16,18 +16,19 @@ constexpr int band_rows = 128;
 /// So that what a surface's colour hides is not divided by nothing.
 constexpr float least_reflectance = 0.001f;
 
-/// Takes the surfaces' own colours, which may be those of fine textures, out of their light, or puts them
-/// back.
+/// Takes the surfaces' own colours, which may be those of fine textures, and the exposure out of their light,
+/// or puts them back.
 void change_colors(const Target& light, const NoisyLight& noisy, bool out) {
     const auto pixels = light.pixels<Vec4>();
-    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy /*of*/) {
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy of) {
         if (surface.frames == 0) return;
-        const Vec3 reflectance = noisy.reflectance(surface).cwiseMax(least_reflectance);
-        const float of_luminance = luminance(reflectance);
+        const Vec3 color = noisy.reflectance(surface).cwiseMax(least_reflectance) *
+                           (of == Noisy::radiance ? noisy.white : 1.0f);
+        const float of_luminance = luminance(color);
         const Vec3 light_rgb = pixels[i].head<3>();
         pixels[i].head<3>() =
-            out ? Vec3(light_rgb.cwiseQuotient(reflectance)) : Vec3(light_rgb.cwiseProduct(reflectance));
-        if (out) pixels[i].w() /= of_luminance * of_luminance;
+            out ? Vec3(light_rgb.cwiseQuotient(color)) : Vec3(light_rgb.cwiseProduct(color));
+        if (out) pixels[i].w() = pixels[i].w() / of_luminance / of_luminance;
     });
 }
 

@@ -62,6 +62,7 @@ struct NoisyLight {
     /// RGBA32F, undefined; for what denoisers write.
     const Target& scratch;
     bool is_white = false;  ///< nothing of the light is reflected: colours of surfaces do not matter
+    float white = 1;        ///< radiance near that which is shown as white; a power of two
 
     Vec3 reflectance(const SurfaceMean& surface) const {
         return is_white ? Vec3(Vec3::Ones()) : surface.mean_reflectance();

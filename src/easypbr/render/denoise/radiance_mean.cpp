@@ -10,6 +10,7 @@
 #include "easypbr/core/luminance.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/native/shaders.h"
+#include "easypbr/render/frame/half_light.h"
 #include "easypbr/render/frame/held_pixels.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/resolve.h"
@@ -308,7 +309,7 @@ void RadianceMean::end_tiles(float noise, float exposure) {
     });
 }
 
-const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
+const Target& RadianceMean::mean(Denoising denoising, float exposure, Transfers& transfers) {
     const bool finds_oidn = denoising == Denoising::best && !OpenImageDenoise::version().empty();
     if (denoising == Denoising::best) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
     if (denoising == Denoising::off || !notes_surfaces_) {
@@ -318,7 +319,7 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     }
     const std::vector<float> coverage = denoised_coverage(denoising, transfers);
     write_noisy_light();
-    const Target& result = denoised(denoising, false, transfers);
+    const Target& result = denoised(denoising, false, half_light_scale(exposure), transfers);
     write_mean(result, &result, coverage);
     return result;
 }
@@ -355,15 +356,15 @@ void RadianceMean::write_mean(const Target& to, const Target* light, const std::
     });
 }
 
-const Target& RadianceMean::denoised(Denoising denoising, bool is_white, Transfers& transfers) {
-    const NoisyLight noisy{light_, noisy_, sample_, is_white};
+const Target& RadianceMean::denoised(Denoising denoising, bool is_white, float white, Transfers& transfers) {
+    const NoisyLight noisy{light_, noisy_, sample_, is_white, white};
     return denoising == Denoising::oidn ? oidn_.denoise(noisy) : filter_.smooth(noisy, transfers);
 }
 
 std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfers& transfers) {
     if (coverage_.empty()) return {};
     write_noisy_coverage();
-    const auto result = denoised(denoising, true, transfers).pixels<Vec4>();
+    const auto result = denoised(denoising, true, 1, transfers).pixels<Vec4>();
     std::vector<float> changes(result.size());
     parallel_for(tiles_.count(), 64, [&](size_t tile) {
         const native::NoisyTile* noisy = noisy_.of(tile);

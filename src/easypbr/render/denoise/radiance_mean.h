@@ -44,8 +44,9 @@ class RadianceMean {
     const SampledTiles& tiles() const { return tiles_; }
 
     /// The means so far, in host memory; of radiance 0 where overlays leave none of it. They live until the
-    /// next call of a member. Throws Error when a denoiser that is asked for by name fails.
-    const Target& mean(Denoising denoising, Transfers& transfers);
+    /// next call of a member. Denoisers take light for dark or bright as it is exposed. Throws Error when a
+    /// denoiser that is asked for by name fails.
+    const Target& mean(Denoising denoising, float exposure, Transfers& transfers);
     /// Null where there was none.
     const Target* overlay_mean();
 
@@ -75,8 +76,8 @@ class RadianceMean {
     TileError error_of(size_t tile, float exposure) const;
     void write_noisy_light();
     void write_noisy_coverage();
-    /// What light_ holds.
-    const Target& denoised(Denoising denoising, bool is_white, Transfers& transfers);
+    /// What light_ holds; see NoisyLight.
+    const Target& denoised(Denoising denoising, bool is_white, float white, Transfers& transfers);
     /// What denoising adds to the sum of the coverages of pixels whose light is denoised; empty where none
     /// has noise.
     std::vector<float> denoised_coverage(Denoising denoising, Transfers& transfers);

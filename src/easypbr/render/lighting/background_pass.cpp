@@ -23,7 +23,8 @@ ShaderInputs inputs_of(const Frame& frame, const gpu::EnvironmentMaps& maps, boo
     if (blur) values.define("BLUR");
     set_camera_uniforms(values, frame);
     values.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
-    values.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+    values.set("u_env_intensity",
+               frame.resolved->settings.environment.intensity * (blur ? maps.scale() : maps.seen_scale()));
     values.set("u_level",
                blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect_width()));
     if (blur && native)

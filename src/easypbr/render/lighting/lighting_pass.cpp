@@ -9,14 +9,15 @@
 
 #include "easypbr/gpu/dfg.h"
 #include "easypbr/gpu/ltc.h"
+#include "easypbr/render/frame/half_light.h"
 #include "easypbr/render/frame/shading_inputs.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
 
-/// Places that soft shadows look at: of a single frame; of so many frames, which are turned against each other,
-/// half of them do.
+/// Places that soft shadows look at: of a single frame; of so many frames, which are turned against each
+/// other, half of them do.
 constexpr int soft_taps = 16, frames_of_few_taps = 8;
 
 using LightUniforms = std::array<blocks::Light, lights_per_block>;
@@ -137,8 +138,9 @@ void set_environment(ShaderInputs& values, const Frame& frame, const LightInputs
     values.set("u_last_level", maps.last_level());
     if (frame.sample_count > 1)
         values.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
-    values.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+    values.set("u_env_intensity", frame.resolved->settings.environment.intensity * maps.scale());
     if (!inputs.traced) return;
+    values.set("u_traced_scale", half_light_scale(frame.resolved->exposure));
     values.set("u_sky_visibility", inputs.traced->sky_visibility);
     values.set("u_indirect_diffuse", inputs.traced->indirect_diffuse);
     values.set("u_indirect_specular", inputs.traced->indirect_specular);

@@ -277,7 +277,7 @@ void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const S
 
 LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
     LitPicture mean = lit;
-    mean.radiance = &mean_.mean(denoising_of(frame), transfers_);
+    mean.radiance = &mean_.mean(denoising_of(frame), frame.resolved->exposure, transfers_);
     mean.overlay = mean_.overlay_mean();
     mean.glow = nullptr;
     mean.covered = drawn_;

@@ -7,6 +7,7 @@
 
 #include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/half_light.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/resolve.h"
 
@@ -180,6 +181,7 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
         sum += visibility;
         return sum / float(frame.sample_index + 1);
     };
+    const float inverse_scale = 1 / half_light_scale(frame.resolved->exposure);
     const auto send = [&](int x, int y) {
         const std::optional<size_t> seen_at = pixels.source(x, y);
         if (!seen_at || pixels.depth[*seen_at] <= 0) return;
@@ -205,8 +207,8 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
             send_mirrored(seen, scene, rays_, pixel, frame.sample_index * mirrored, mirrored, sent);
         pixels.sky_visibility[at] =
             half4(sent.sky_visibility, recesses(mean_visibility(x, y, sent.visibility), material[2]));
-        pixels.indirect_diffuse[at] = half4(sent.indirect_diffuse, 0);
-        pixels.indirect_specular[at] = half4(sent.indirect_specular, sent.covered);
+        pixels.indirect_diffuse[at] = half4(sent.indirect_diffuse * inverse_scale, 0);
+        pixels.indirect_specular[at] = half4(sent.indirect_specular * inverse_scale, sent.covered);
     };
     const PixelRect& area = pixels.area;
     parallel_for(size_t(area.height), 4, [&](size_t row) {

@@ -9,9 +9,10 @@ namespace easypbr::render {
 struct TracedLight {
     Target sky_visibility;     ///< RGBA16F: part of the sky's diffuse light that arrives; a: part of all
                                ///< light left by recesses that the material knows of and rays do not find
-    Target indirect_diffuse;   ///< RGBA16F: diffuse light of other surfaces, divided by pi
-    Target indirect_specular;  ///< RGBA16F: what other surfaces fill of the reflection, premultiplied;
-                               ///< a: how much
+    Target indirect_diffuse;   ///< RGBA16F: diffuse light of other surfaces, divided by pi and
+                               ///< half_light_scale()
+    Target indirect_specular;  ///< RGBA16F: what other surfaces fill of the reflection, premultiplied,
+                               ///< divided by half_light_scale(); a: how much
 
     /// Brings what rays found to the textures.
     void upload(Transfers& transfers) const {

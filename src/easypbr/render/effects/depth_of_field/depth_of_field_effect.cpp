@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/render/frame/half_light.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -82,6 +83,7 @@ int DepthOfFieldEffect::reach(const Frame& whole, const Box3d& bounds) const {
 ShaderInputs DepthOfFieldEffect::halve_inputs(const EffectInputs& inputs) const {
     ShaderInputs values;
     values.set("u_size", Vec2(inputs.frame.size.cast<float>()));
+    values.set("u_light_scale", half_light_scale(inputs.frame.resolved->exposure));
     values.set("u_focus", Vec2(confusion_of(inputs.frame).cast<float>()));
     values.set("u_radiance", inputs.targets.radiance);
     values.set("u_depth_target", inputs.targets.depth);
