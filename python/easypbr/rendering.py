@@ -45,6 +45,7 @@ _ARGUMENTS = {
     "background.image": "background='photo.jpg'",
     "camera.position": "camera={'position': (3, 2, 5), 'target': (0, 0, 0)}",
     "camera.pose": "camera=T_world_cam",
+    "path.enabled": "mode='path'",
 }
 
 
@@ -61,6 +62,7 @@ def render(
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
+    mode: Literal["raster", "path"] | None = None,
     **values: "Unpack[RenderSettings]",
 ) -> NDArray[np.uint8]: ...
 
@@ -79,6 +81,7 @@ def render(
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
+    mode: Literal["raster", "path"] | None = None,
     **values: "Unpack[RenderSettings]",
 ) -> NDArray[np.float32]: ...
 
@@ -96,6 +99,7 @@ def render(
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
+    mode: Literal["raster", "path"] | None = None,
     **values: "Unpack[RenderSettings]",
 ) -> NDArray[Any]: ...
 
@@ -112,6 +116,7 @@ def render(
     settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
+    mode: Literal["raster", "path"] | None = None,
     **values: Any,
 ) -> NDArray[Any]:
     """Renders `what`: a Scene, or anything as_mesh() takes: a path, a Mesh, points (n x 3, n x 6 with colours), (V, F), a dict
@@ -124,7 +129,8 @@ def render(
     camera-to-world matrix with OpenGL axes, or (position, target, up). Points without a finite position are left out with a
     warning, or raise if `strict`. Values that PyVista and VTK colour by get a colour bar. Other keywords are settings by the
     last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of settings. `preset`: "dark", "flat",
-    "paper", "studio" or a file of settings that all others win over."""
+    "paper", "studio" or a file of settings that all others win over. `mode`: "raster" lights the image as frames that move are,
+    "path" traces paths, the default of several samples."""
     linear_file = out is not None and _check_path(out)
     scene, made = scene_of(what, strict=strict)
     view = Viewer(size, settings, scene=scene, preset=preset)
@@ -132,6 +138,8 @@ def render(
         _set_environment(view, environment)
     if background is not None:
         _set_background(view, background)
+    if mode is not None:
+        view.settings.path.enabled = _traces_paths(mode)
     for name, value in values.items():
         view.settings[_full_name(name)] = value
     show_colorbar(view, made)
@@ -174,6 +182,12 @@ def _set_background(view: Viewer, background: Any) -> None:
         view.settings["background.mode"] = "image"
     else:
         view.settings["background.color"] = background
+
+
+def _traces_paths(mode: Any) -> bool:
+    if mode not in ("raster", "path"):
+        raise ArgumentError(f"render(): mode: expected 'raster' or 'path', got {mode!r}")
+    return bool(mode == "path")
 
 
 def _full_name(name: str) -> str:
