@@ -156,3 +156,40 @@ def test_a_file_that_asks_for_too_much_memory(tmp_path):
     assert len(easypbr.load_scene(path, memory_gb=0.02).mesh.children[0].V) == 1_000_000
     with pytest.raises(ValueError, match="expected 0 or more GB"):
         easypbr.load_scene(path, memory_gb=-1)
+
+
+def write_brushed_square(path, tangent, uv):
+    """A square of anisotropic metal that faces +z, with TANGENT, and with texture coordinates or without."""
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], "f4")
+    arrays = {"POSITION": corners, "NORMAL": np.tile(np.float32([0, 0, 1]), (4, 1)), "TANGENT": np.tile(np.float32(tangent), (4, 1))}
+    if uv:
+        arrays["TEXCOORD_0"] = (corners[:, :2] + 1) / 2
+    faces = np.array([0, 1, 2, 0, 2, 3], "u4")
+    data, views, accessors = b"", [], []
+    for array in [*arrays.values(), faces]:
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes})
+        kind = "SCALAR" if array.ndim == 1 else f"VEC{array.shape[1]}"
+        accessors.append({"bufferView": len(views) - 1, "componentType": 5126 if array.dtype == "f4" else 5125,
+                          "count": len(array), "type": kind})
+        data += array.tobytes()
+    accessors[0] |= {"min": [-1, -1, 0], "max": [1, 1, 0]}
+    primitive = {"attributes": {name: i for i, name in enumerate(arrays)}, "indices": len(arrays), "material": 0}
+    material = {"pbrMetallicRoughness": {"roughnessFactor": 0.3}, "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 1}}}
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "scene": 0, "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive]}], "materials": [material], "extensionsUsed": ["KHR_materials_anisotropy"],
+        "accessors": accessors, "bufferViews": views, "buffers": [{"byteLength": len(data), "uri": uri}]}))
+
+
+@pytest.mark.parametrize("mode", ["raster", "path"])
+def test_tangents_without_texture_coordinates(tmp_path, mode):
+    """Anisotropy runs along TANGENT, whether there are texture coordinates or not."""
+    def picture(tangent, uv):
+        write_brushed_square(tmp_path / "square.gltf", tangent, uv)
+        return easypbr.render(tmp_path / "square.gltf", size=(48, 48), samples=1, mode=mode).astype(int)
+
+    along_x, along_y = [1, 0, 0, 1], [0, 1, 0, 1]
+    assert np.array_equal(picture(along_y, False), picture(along_y, True))
+    # Without TANGENT the grain runs around the up axis, which is along x here.
+    assert np.abs(picture(along_y, False) - picture(along_x, False)).max() > 50

@@ -28,7 +28,11 @@ Array3f face_normals(const Array3f& V, const Array3i& F);
 ArrayXf corner_tangents(const Array3f& V, const Array3f& N, const Array2f& UV, const Array3i& F);
 
 /// Tangents per face corner as they are drawn: those that the mesh has (MeshData::uv_tangents),
-/// corner_tangents() elsewhere. `N` has a row for each vertex.
+/// corner_tangents() elsewhere. `N` has a row for each vertex. Meshes without texture coordinates must have
+/// all.
 ArrayXf mesh_tangents(const MeshData& mesh, const Array3f& N);
+
+/// Whether MeshData::uv_tangents has a tangent for each vertex.
+bool has_all_tangents(const MeshData& mesh);
 
 }  // namespace easypbr

@@ -272,7 +272,8 @@ void add_shading(Table& table) {
 
     table.push_back(
         make("edl.enabled", EASYPBR_AT(edl.enabled),
-             "Enables eye-dome lighting of points without normals, which darkens depth discontinuities."));
+             "Enables eye-dome lighting of points without normals that are lit, which darkens depth "
+             "discontinuities."));
     table.push_back(
         make("edl.strength", EASYPBR_AT(edl.strength), "Strength of eye-dome lighting.", "", {0, 100}));
     table.push_back(make("edl.radius", EASYPBR_AT(edl.radius),
@@ -413,8 +414,7 @@ void add_style(Table& table) {
         "the material's double_sided");
     add("flat", &Style::flat, "Enables flat shading, with one normal per face.", "no");
     add("lit", &Style::lit, "Enables lighting; without it the colours are shown unchanged.",
-        "yes for faces, surfels, voxels and points with normals, no for points that are labelled or have no "
-        "normals");
+        "yes, but for labelled points; points without normals are shaded by eye-dome lighting then");
     add("overlay", &Style::overlay, "Draws objects over all others, without a depth test against them.",
         "no");
     add("color_by", &Style::color_by, "Source of the colours of objects.",

@@ -208,12 +208,27 @@ ArrayXf corner_tangents(const Array3f& V, const Array3f& N, const Array2f& UV, c
     return T;
 }
 
+namespace {
+
+/// Mixtures of vertices with different signs have no tangent.
+bool is_tangent(const Array4f& tangents, Eigen::Index vertex) {
+    return std::abs(tangents(vertex, 3)) > 0.5f;
+}
+
+}  // namespace
+
+bool has_all_tangents(const MeshData& mesh) {
+    const Array4f& given = mesh.uv_tangents;
+    for (Eigen::Index i = 0; i < given.rows(); ++i)
+        if (!is_tangent(given, i)) return false;
+    return !given.empty();
+}
+
 ArrayXf mesh_tangents(const MeshData& mesh, const Array3f& N) {
     const Array4f& given = mesh.uv_tangents;
     const auto computed = [&] { return corner_tangents(mesh.V, N, mesh.UV, mesh.F); };
     if (given.empty()) return computed();
-    // Mixtures of vertices with different signs have none.
-    const auto is_given = [&](Eigen::Index vertex) { return std::abs(given(vertex, 3)) > 0.5f; };
+    const auto is_given = [&](Eigen::Index vertex) { return is_tangent(given, vertex); };
     require_faces(mesh.F, given.rows());
     const std::span<const int32_t> corners(mesh.F.data(), size_t(mesh.F.size()));
     ArrayXf::Dense T = std::ranges::all_of(corners, is_given) ? ArrayXf::Dense(mesh.F.size(), 4)

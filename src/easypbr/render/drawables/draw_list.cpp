@@ -164,7 +164,7 @@ double DrawItem::scale() const {
 }
 
 bool DrawItem::needs_tangents() const {
-    if (mesh().UV.empty()) return false;
+    if (mesh().UV.empty()) return material.anisotropy > 0 && has_all_tangents(mesh());
     return material.normal_texture || material.clearcoat_normal_texture || material.anisotropy > 0;
 }
 

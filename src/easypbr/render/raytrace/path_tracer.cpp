@@ -426,7 +426,7 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
 Vec3 PathTracer::shown(const HitSurfaces& surfaces, size_t i, const PathState& state) const {
     if (is_lit_kind(surfaces.kind[i])) return surfaces.emission.at(i) / squared_index(*scene_, state);
     if (is_unlit_kind(surfaces.kind[i])) return surfaces.emission.at(i);
-    return surfaces.albedo.at(i) / std::max(resolved_->exposure, 1e-20f);
+    return surfaces.albedo.at(i) * shown_as_one(resolved_->exposure);
 }
 
 PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const {

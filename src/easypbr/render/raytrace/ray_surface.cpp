@@ -175,7 +175,7 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0, float exposure) {
         if (m.emissive_texture) s.emission = s.emission.cwiseProduct(Texel(m.emissive_texture, uv).color());
     }
     if (item.kind != SurfaceKind::lit) {
-        s.emission = base / std::max(exposure, 1e-20f);
+        s.emission = base * shown_as_one(exposure);
         return s;
     }
     if (m.unlit) {

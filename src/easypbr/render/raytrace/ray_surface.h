@@ -40,6 +40,11 @@ struct RaySurface {
     float roughness = 1;
 };
 
+/// Radiance that the picture shows as 1, where it shows any.
+inline float shown_as_one(float exposure) {
+    return exposure > 0 ? 1 / exposure : 1.0f;
+}
+
 /// Textures are read at their nearest texel; normal maps do not count. `exposure`: of the picture, in which
 /// what is shown past the light has the colour that it has.
 RaySurface surface_at(const RayHit& hit, float dielectric_f0, float exposure);
