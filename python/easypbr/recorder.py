@@ -53,8 +53,15 @@ class Recorder:
         """Starts a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered images ("out/frame_%04d.png", or a
         folder), by the name. `with view.recorder.start("out.mp4"):` stops it at the end of the block. `codec` is
         FFmpeg's name of an encoder. While recording, view.time advances by 1 / fps per frame."""
-        self._handle.start_recording(path, fps, size, samples_of(samples), codec, deep)
+        was_recording = self.is_recording
         _started.add(self)
+        try:
+            self._handle.start_recording(path, fps, size, samples_of(samples), codec, deep)
+        except BaseException:
+            # Ctrl-C raises after the call, when the recording has started.
+            if not was_recording:
+                self.stop()
+            raise
         return self
 
     def add_frame(self, picture: ArrayLike | None = None) -> None:

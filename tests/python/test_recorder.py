@@ -210,6 +210,33 @@ def test_pictures_of_ones_own_are_frames(view, size, tmp_path):
             view.recorder.add_frame(np.zeros((2, 3, 3), np.uint8))
         with pytest.raises(ValueError, match=r"a\.mp4 is being recorded"):
             view.recorder.start(tmp_path / "b.mp4")
+        assert view.recorder.is_recording
+
+
+class InterruptedStart:
+    """A viewer's handle with which Ctrl-C comes during start_recording(): Python raises when the call is over."""
+
+    def __init__(self, handle):
+        self.handle = handle
+
+    def __getattr__(self, name):
+        return getattr(self.handle, name)
+
+    def start_recording(self, *values):
+        self.handle.start_recording(*values)
+        raise KeyboardInterrupt
+
+
+def test_an_interrupted_start_records_nothing(view, tmp_path):
+    recorder, handle = view.recorder, view.recorder._handle
+    path = view.turntable(1)
+    for start in (lambda: recorder.start(tmp_path / "a.mp4"), lambda: recorder.record_path(path, tmp_path / "a.mp4", frames=2)):
+        recorder._handle = InterruptedStart(handle)
+        with pytest.raises(KeyboardInterrupt):
+            start()
+        recorder._handle = handle
+        assert not recorder.is_recording and view.fixed_step is None and list(tmp_path.iterdir()) == []
+    assert recorder.record_path(path, tmp_path / "a.mp4", frames=2) == 2
 
 
 @pytest.mark.parametrize("ending", ["", "del view, recorder", "raise SystemExit(0)"])
