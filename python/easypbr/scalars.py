@@ -20,6 +20,10 @@ class Scalars(MutableMapping[str, NDArray[Any]]):
     def __setitem__(self, name: str, values: ArrayLike) -> None:
         self._mesh.add_scalar(name, values)
 
+    def update(self, *values: Any, **more: Any) -> None:
+        """Adds or replaces all of them; with an error, none."""
+        self._mesh._add_scalars(dict(*values, **more))
+
     def __delitem__(self, name: str) -> None:
         if name not in self:
             raise KeyError(name)

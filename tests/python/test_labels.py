@@ -161,6 +161,10 @@ def test_scalars_have_names():
         del mesh.scalars["z"]
     with pytest.raises(easypbr.ArgumentError, match="scalars"):
         mesh.scalars["z"] = [1, 2, 3]
+    mesh.scalars.update({"a": [1, 2]}, b=[3, 4])
+    with pytest.raises(easypbr.ArgumentError, match="scalars"):
+        mesh.scalars.update({"a": [5, 6], "c": [1, 2], "d": [1, 2, 3]})
+    assert {name: values.tolist() for name, values in mesh.scalars.items()} == {"a": [1, 2], "b": [3, 4]}
 
 
 @pytest.mark.parametrize("values, message", [

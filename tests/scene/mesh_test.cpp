@@ -172,6 +172,21 @@ TEST(Mesh, KeepsScalarsByName) {
     EXPECT_EQ(mesh.scalar("area")(0), 2);
 }
 
+TEST(Mesh, AddsAllScalarsOrNone) {
+    Mesh mesh(triangle());
+    const Array1f ones(Array1f::Dense::Constant(3, 1)), twos(Array1f::Dense::Constant(3, 2));
+    mesh.edit([&](MeshData& data) { data.scalars = {ScalarArray{"heat", ones, true}}; });
+    const ScalarArray heat{"heat", twos}, area{"area", twos}, bad{"bad", Array1f(Array1f::Dense::Zero(7, 1))};
+    EXPECT_THROW(mesh.add_scalars({heat, area, bad}), ArgumentError);
+    ASSERT_EQ(mesh.snapshot()->scalars.size(), 1u);
+    EXPECT_EQ(mesh.scalar("heat")(0), 1);
+    mesh.add_scalars({heat, area});
+    ASSERT_EQ(mesh.snapshot()->scalars.size(), 2u);
+    EXPECT_EQ(mesh.scalar("heat")(0), 2);
+    EXPECT_TRUE(mesh.snapshot()->scalars[0].from_file) << "only its values are replaced";
+    EXPECT_EQ(mesh.scalar("area")(0), 2);
+}
+
 TEST(Mesh, FindsTheFirstBadRowOfMany) {
     // The scan runs in parallel chunks; the row reported is the first one all the same.
     Faces F = Faces::Zero(300000, 3);

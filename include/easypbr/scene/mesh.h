@@ -95,6 +95,8 @@ class Mesh {
     Array1f scalar(const std::string& name) const;
     /// Adds scalars, or replaces those of the same name.
     void add_scalar(const std::string& name, Array1f values);
+    /// As add_scalar(), all of them or none.
+    void add_scalars(const std::vector<ScalarArray>& scalars);
     /// Throws NameError with the nearest name.
     void remove_scalar(const std::string& name);
 

@@ -49,6 +49,15 @@ Array1f scalar_values(const std::string& name, nb::handle values) {
     return to_array<float, 1>(numbers, {array.c_str(), 1, 1});
 }
 
+std::vector<ScalarArray> scalar_arrays(nb::handle items) {
+    std::vector<ScalarArray> scalars;
+    for (nb::handle item : items) {
+        const std::string name = nb::cast<std::string>(nb::str(nb::object(item[0])));
+        scalars.push_back({name, scalar_values(name, nb::object(item[1]))});
+    }
+    return scalars;
+}
+
 nb::dict scalars_of(const Mesh& mesh) {
     nb::dict scalars;
     for (const ScalarArray& scalar : mesh.snapshot()->scalars)
@@ -84,10 +93,7 @@ MeshChange prepare_scalars(nb::handle object) {
         if (!nb::hasattr(object, "items"))
             throw ArgumentError(
                 "mesh scalars: expected a dict of name to values; add_scalar(name, values) adds one");
-        for (nb::handle item : object.attr("items")()) {
-            const std::string name = nb::cast<std::string>(nb::str(nb::object(item[0])));
-            scalars.push_back({name, scalar_values(name, nb::object(item[1]))});
-        }
+        scalars = scalar_arrays(object.attr("items")());
     }
     return [scalars](MeshData& data) { data.scalars = scalars; };
 }
@@ -121,6 +127,11 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
             "Named scalar fields of vertices or faces: mesh.scalars['heat'] = values adds or replaces, del "
             "removes; assign a dict to replace all.")
         .def("_scalars", scalars_of)
+        .def("_add_scalars",
+             [](Mesh& m, const nb::dict& values) {
+                 const std::vector<ScalarArray> scalars = scalar_arrays(values.attr("items")());
+                 released([&] { m.add_scalars(scalars); });
+             })
         .def("_keep_scalars_aside",
              [](Mesh& m) {
                  released([&] {

@@ -95,13 +95,18 @@ void Mesh::set_material(const Material& material, int index) {
 }
 
 void Mesh::add_scalar(const std::string& name, Array1f values) {
+    add_scalars({ScalarArray{name, std::move(values)}});
+}
+
+void Mesh::add_scalars(const std::vector<ScalarArray>& scalars) {
     edit([&](MeshData& data) {
-        const auto same = [&](const ScalarArray& scalar) { return scalar.name == name; };
-        const auto found = std::find_if(data.scalars.begin(), data.scalars.end(), same);
-        if (found != data.scalars.end())
-            found->values = values;
-        else
-            data.scalars.push_back({name, values});
+        for (const ScalarArray& scalar : scalars) {
+            const auto found = std::ranges::find(data.scalars, scalar.name, &ScalarArray::name);
+            if (found != data.scalars.end())
+                found->values = scalar.values;
+            else
+                data.scalars.push_back(scalar);
+        }
     });
 }
 
