@@ -109,8 +109,8 @@ class Viewer(Sharing):
         if isinstance(source, (str, os.PathLike)):
             self._handle.load_environment_map(source)
         else:
-            self._handle.set_setting("environment.file", "")
             self.scene.environment = source
+            self._handle.set_setting("environment.file", "")
 
     @property
     def camera(self) -> "_easypbr.Camera":

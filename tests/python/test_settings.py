@@ -104,6 +104,15 @@ def test_bad_values_are_refused_and_change_nothing(view, name, value, message):
     assert view.settings[name] == before
 
 
+def test_a_bad_environment_map_leaves_the_one_before(view):
+    view.settings.environment.file = "map.hdr"
+    with pytest.raises(ValueError, match="5 channels"):
+        view.load_environment_map(np.zeros((4, 8, 5)))
+    assert view.settings.environment.file == "map.hdr"
+    view.load_environment_map(np.ones((4, 8, 3), np.float32))
+    assert view.settings.environment.file == ""
+
+
 def test_names_can_be_listed_and_described(view):
     assert {"camera", "lights", "tonemap"} <= set(dir(view.settings))
     assert {"key", "fill", "rim", "intensity"} <= set(dir(view.settings.lights))
