@@ -43,7 +43,8 @@ _EXPECTED = (
 
 
 def set_camera(handle: "_easypbr.ViewerHandle", camera: Any, named: "Mapping[str, _easypbr.Camera] | None" = None) -> None:
-    """Pins the camera of a viewer. `named`: the cameras of its files. Raises ArgumentError for what is no camera."""
+    """Pins the camera of a viewer. `named`: the cameras of its files. Raises ArgumentError for what is no camera, which
+    changes nothing."""
     if isinstance(camera, _easypbr.Camera):
         handle.camera = camera
     elif isinstance(camera, str):
@@ -51,7 +52,7 @@ def set_camera(handle: "_easypbr.ViewerHandle", camera: Any, named: "Mapping[str
     elif isinstance(camera, Mapping):
         _set_values(handle, camera)
     elif isinstance(camera, (tuple, list)) and len(camera) == 3 and all(np.size(part) == 3 for part in camera):
-        _look_at(handle, *camera)
+        handle.camera = _looking_at(handle, *camera)
     else:
         _set_pose(handle, camera)
 
@@ -63,37 +64,35 @@ def _set_view(handle: "_easypbr.ViewerHandle", name: str, named: "Mapping[str, _
     if name not in VIEWS:
         files = f"; the cameras of the file are {', '.join(map(repr, named))}" if named else ""
         raise ArgumentError(f"camera: there is no view '{name}': {_EXPECTED}{files}")
-    for setting, value in zip(("azimuth_deg", "elevation_deg"), VIEWS[name]):
-        handle.set_setting(f"camera.{setting}", value)
+    azimuth_deg, elevation_deg = VIEWS[name]
     # A camera that was pinned before would stay where it is.
-    handle.set_setting("camera.pose", ())
-    for setting in ("position", "target"):
-        handle.set_setting(f"camera.{setting}", _easypbr.auto)
+    freed = {"camera.pose": (), "camera.position": _easypbr.auto, "camera.target": _easypbr.auto}
+    handle.set_settings({"camera.azimuth_deg": azimuth_deg, "camera.elevation_deg": elevation_deg, **freed})
 
 
 def _set_values(handle: "_easypbr.ViewerHandle", values: Mapping[str, Any]) -> None:
-    given = {}
+    given: dict[str, Any] = {}
     for key, value in values.items():
         name = _KEYS.get(str(key), str(key))
         if name in given:
             raise ArgumentError(f"camera: '{key}' is {name}, which is given already")
         _easypbr.field(f"camera.{name}")
         given[name] = value
+    pinned = None
     up = given.get("up")
     if up is not None and not isinstance(up, str):
         if "position" not in given or "target" not in given:
             raise ArgumentError("camera: an up vector needs position and target; the world's up axis is a text such as '+z'")
-        _look_at(handle, given.pop("position"), given.pop("target"), given.pop("up"))
+        pinned = _looking_at(handle, given.pop("position"), given.pop("target"), given.pop("up"))
     elif "position" in given or "target" in given:
-        handle.set_setting("camera.pose", ())
-    for name, value in given.items():
-        handle.set_setting(f"camera.{name}", value)
+        given = {"pose": (), **given}
+    handle.set_settings({f"camera.{name}": value for name, value in given.items()}, pinned)
 
 
-def _look_at(handle: "_easypbr.ViewerHandle", position: Any, target: Any, up: Any) -> None:
+def _looking_at(handle: "_easypbr.ViewerHandle", position: Any, target: Any, up: Any) -> "_easypbr.Camera":
     fov_y_deg = handle.get_setting("camera.fov_y_deg")
     known = fov_y_deg if isinstance(fov_y_deg, (int, float)) else 30.0
-    handle.camera = _easypbr.Camera.look_at(position, target, up, known)
+    return _easypbr.Camera.look_at(position, target, up, known)
 
 
 def _set_pose(handle: "_easypbr.ViewerHandle", camera: Any) -> None:

@@ -39,7 +39,7 @@ class SettingsGroup:
         elif name in self._next_parts():
             if not isinstance(value, Mapping):
                 raise AttributeError(f"'{full}' is a group of settings: set its members, or assign a dict of them")
-            _assign(self._handle, value, full + ".")
+            self._handle.set_settings(_by_full_names(value, full + "."))
         else:
             raise _attribute_error(full)
 
@@ -80,25 +80,27 @@ class Settings(SettingsGroup):
         return "\n".join(lines)
 
     def update(self, values: Mapping) -> None:
-        """Sets values from a dict: nested ({"camera": {"fov_y_deg": 45}}), by full names, or as to_dict() gives it."""
+        """Sets values from a dict, all or, with an error, none: nested ({"camera": {"fov_y_deg": 45}}), by full names, or
+        as to_dict() gives it."""
         if "easypbr" in values:
             self._handle.settings_from_json(json.dumps(values))
         else:
-            _assign(self._handle, values, "")
+            self._handle.set_settings(_by_full_names(values, ""))
 
     def to_dict(self) -> dict:
         """All settings, given and inferred, and the lights of the scene, as in a settings file."""
         return json.loads(self._handle.settings_to_json())
 
 
-def _assign(handle: "_easypbr.ViewerHandle", values: Mapping, prefix: str) -> None:
+def _by_full_names(values: Mapping, prefix: str) -> dict[str, Any]:
+    named: dict[str, Any] = {}
     for name, value in values.items():
         full = prefix + name
-        is_group = isinstance(value, Mapping) and full not in _FIELDS
-        if is_group:
-            _assign(handle, value, full + ".")
+        if isinstance(value, Mapping) and full not in _FIELDS:
+            named |= _by_full_names(value, full + ".")
         else:
-            handle.set_setting(full, value)
+            named[full] = value
+    return named
 
 
 def _attribute_error(full: str) -> AttributeError:

@@ -46,3 +46,31 @@ def test_a_pinned_camera_is_used_and_read_back(size):
     # float32 depth through one matrix product: a few units in the last place of 3.
     np.testing.assert_allclose(depth[depth > 0], 3, rtol=1e-5)
     assert depth[24, 32] > 0
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"position": (5, 5, 5), "fov_y_deg": 500},
+        {"position": (float("nan"), 0, 0)},
+        {"azimuth_deg": 50, "margin": 44},
+        {"position": (5, 5, 5), "target": (0, 0, 0), "up": (0, 0, 1), "fov_y_deg": 500},
+        {"position": (5, 5, 5), "target": (5, 5, 5), "up": (0, 0, 1)},
+        {"target": (0, 0, 0), "focal_point": (0, 0, 0)},
+    ],
+)
+def test_what_is_no_camera_changes_nothing(wrong):
+    view = Viewer(scene=Scene())
+    view.camera = Camera.from_opencv(np.array([[500, 0, 320], [0, 510, 240], [0, 0, 1.0]]), np.eye(4), (640, 480))
+    before = list(view.settings)
+    with pytest.raises(ValueError):
+        view.camera = wrong
+    assert list(view.settings) == before
+
+
+def test_an_up_vector_goes_with_other_values():
+    view = Viewer(scene=Scene())
+    view.camera = {"position": (0, 0, 5), "target": (0, 0, 0), "up": (1, 0, 0), "fov": 50, "near": 0.25}
+    # Backwards is +z and up +x, so that right is up x backwards: -y.
+    np.testing.assert_allclose(view.camera.T_world_cam[:3, :3], [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], atol=1e-12)
+    assert view.settings.camera.fov_y_deg == 50 and view.settings.camera.near == 0.25

@@ -104,6 +104,32 @@ def test_bad_values_are_refused_and_change_nothing(view, name, value, message):
     assert view.settings[name] == before
 
 
+def test_several_values_are_set_all_or_none(view):
+    s, before = view.settings, list(view.settings)
+
+    def assign(group, values):
+        if group:
+            setattr(s, group, values)
+        else:
+            view.settings = values
+
+    for group, values in (
+        ("", {"camera": {"fov_y_deg": 60, "margn": 0.1}}),
+        ("", {"image.samples": 3, "camera": {"fov_y_deg": 500}}),
+        ("camera", {"fov_y_deg": 60, "margin": "wide"}),
+        ("lights", {"key": {"intensity": 3}, "fill": {"intensity": "much"}}),
+    ):
+        with pytest.raises((KeyError, ValueError)):
+            assign(group, values)
+        assert list(s) == before
+        if not group:
+            with pytest.raises((KeyError, ValueError)):
+                s.update(values)
+            assert list(s) == before
+    s.update({"camera": {"fov_y_deg": 60}, "image.samples": 3})
+    assert s.camera.fov_y_deg == 60 and s.image.samples == 3
+
+
 def test_a_bad_environment_map_leaves_the_one_before(view):
     view.settings.environment.file = "map.hdr"
     with pytest.raises(ValueError, match="5 channels"):

@@ -50,6 +50,25 @@ void set_setting(SharedViewer& self, const std::string& name, nb::handle object)
     self.run([&](Viewer& viewer) { set(viewer.settings(), name, value); });
 }
 
+/// All of them or none; a camera is pinned before the values are set.
+void set_settings(SharedViewer& self, const nb::dict& values, const std::optional<Camera>& camera) {
+    std::vector<std::pair<std::string, Value>> given;
+    for (const auto& [key, object] : values) {
+        const auto name = nb::cast<std::string>(key);
+        given.emplace_back(name, value_from_python(field(name), object));
+    }
+    self.run([&](Viewer& viewer) {
+        const Settings before = viewer.settings();
+        try {
+            if (camera) viewer.set_camera(*camera);
+            for (const auto& [name, value] : given) set(viewer.settings(), name, value);
+        } catch (...) {
+            viewer.settings() = before;
+            throw;
+        }
+    });
+}
+
 nb::object resolved_setting(SharedViewer& self, const std::string& name) {
     const InferredSettings settings =
         self.run([](Viewer& viewer) { return viewer.session().resolve().settings; });
@@ -312,6 +331,7 @@ void bind_pictures(ViewerClass& viewer) {
 void bind_viewer_settings(ViewerClass& viewer) {
     viewer.def("get_setting", get_setting, nb::arg("name"))
         .def("set_setting", set_setting, nb::arg("name"), nb::arg("value").none())
+        .def("set_settings", set_settings, nb::arg("values"), nb::arg("camera").none() = nb::none())
         .def("resolved_setting", resolved_setting, nb::arg("name"))
         .def("settings_to_json", settings_to_json)
         .def("settings_from_json", settings_from_json, nb::arg("json"))
