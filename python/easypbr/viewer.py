@@ -126,7 +126,7 @@ class Viewer(Sharing):
     @property
     def time(self) -> float:
         """Animation time in seconds, of the last frame of a window, of a recording, or, without both, of render(); assign to
-        set it."""
+        set that of the next frame."""
         return self._handle.time
 
     @time.setter
@@ -145,8 +145,8 @@ class Viewer(Sharing):
 
     @property
     def fixed_step(self) -> float | None:
-        """Seconds that each frame takes of the animation's time, however long it is drawn; None: real time. While
-        recording it is 1 / fps."""
+        """Seconds that each frame takes of the animation's time, however long it is drawn; None: real time. The first frame
+        after a change between the two, or after view.time was set, is at view.time. While recording it is 1 / fps."""
         return self._handle.fixed_step
 
     @fixed_step.setter

@@ -14,6 +14,7 @@ class Player : public testing::Test {
   protected:
     Player() {
         clock_.set_fixed_step(0.5);
+        clock_.tick();  // the first frame, at 0
         clock_.on_tick = [this] { player_.update(); };
         clock_.on_set = [this] { player_.follow_set_clock(); };
         AnimationNode node;
@@ -150,11 +151,15 @@ TEST_F(Player, ASetClockSetsItBackToWhereItBeganAtMost) {
     clock_.set_time(2);
     player_.add("box", animations_);
     player_.play(0);
+    clock_.tick();
+    EXPECT_EQ(x(), 0) << "the first frame, at 2 s";
     for (int i = 0; i < 4; ++i) clock_.tick();
     clock_.set_time(3);
     EXPECT_DOUBLE_EQ(player_.time(), 1);
     clock_.set_time(0);
     EXPECT_EQ(player_.time(), 0) << "it began to play at 2 s";
+    clock_.tick();
+    EXPECT_EQ(x(), 0);
     clock_.tick();
     EXPECT_NEAR(x(), 0.25, 1e-12);
 }

@@ -180,6 +180,28 @@ TEST_F(Recordings, TheClockMakesStepsOfAFrame) {
     EXPECT_THROW(recorder_.add_frame(), ArgumentError);
 }
 
+// After a recording of two frames the next frame is at 0.2 s, whether it is recorded or not.
+TEST_F(Recordings, GoOnWithTheClocksOwnStep) {
+    clock_.set_fixed_step(0.5);
+    clock_.tick();
+    recorder_.start(folder_ / "a", {.fps = 10});
+    EXPECT_EQ(clock_.time(), 0);
+    EXPECT_EQ(clock_.delta_time(), 0);
+    recorder_.add_frame();
+    recorder_.add_frame();
+    EXPECT_EQ(recorder_.stop(), 2);
+    EXPECT_EQ(clock_.fixed_step(), 0.5);
+    clock_.tick();
+    EXPECT_EQ(clock_.time(), 0.2);
+    clock_.tick();
+    EXPECT_EQ(clock_.time(), 0.7);
+    recorder_.start(folder_ / "b", {.fps = 10});
+    clock_.set_time(5);
+    recorder_.add_frame();
+    EXPECT_EQ(clock_.time(), 5.1) << "the frame at 5 s was recorded";
+    EXPECT_EQ(recorder_.stop(), 1);
+}
+
 TEST_F(Recordings, WithoutFramesLeaveNoFile) {
     fs::create_directory(folder_ / "old");
     write_file(folder_ / "old/notes.txt", std::string_view("kept"));

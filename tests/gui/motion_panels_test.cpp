@@ -341,6 +341,7 @@ TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     node.mesh = session_.scene().get("ball");
     player_.add("ball", Animations({{node}, {}, {}, {slide("slide"), slide("other")}}));
     clock_.set_fixed_step(0.5);
+    clock_.tick();  // the first frame, at 0
     clock_.on_tick = [this] { player_.update(); };
     const auto x = [&] { return session_.scene().get("ball").T_parent_mesh().translation().x(); };
     unfold(Panel::animations);

@@ -163,8 +163,49 @@ def test_time_goes_on_in_a_loop_of_render(cone):
     view.render(samples=1)
     assert (view.time, view.delta_time) == (3.5, 0)
     view.fixed_step = 0.25
-    view.render(samples=1)
-    assert (view.time, view.delta_time) == (3.75, 0.25)
+    for expected in ((3.5, 0), (3.75, 0.25)):
+        view.render(samples=1)
+        assert (view.time, view.delta_time) == expected
+
+
+def test_fixed_steps_begin_as_a_recording_does(cone, tmp_path):
+    view = Viewer((16, 12), scene=_scene_of(cone))
+    view.fixed_step = 0.125
+    for _ in range(2):
+        for expected in ((0, 0), (0.125, 0.125), (0.25, 0.125)):
+            view.render(samples=1)
+            assert (view.time, view.delta_time) == expected
+        view.time = 0
+    view.fixed_step, times = None, []
+    with view.recorder.start(tmp_path / "%d.png", fps=8, samples=1):
+        for _ in range(3):
+            times.append((view.time, view.delta_time))
+            view.recorder.add_frame()
+    assert times == [(0, 0), (0.125, 0.125), (0.25, 0.125)]
+
+
+def test_steps_may_differ(cone):
+    view = Viewer((16, 12), scene=_scene_of(cone))
+    times = []
+    for step in (0.5, 0.25, 0.125):
+        view.fixed_step = step
+        view.render(samples=1)
+        times.append(view.time)
+    assert times == [0, 0.25, 0.375]
+
+
+def test_a_failed_image_takes_no_time(cone):
+    view = Viewer((16, 12), scene=_scene_of(cone))
+    view.fixed_step = 0.25
+    with pytest.raises(easypbr.Error):
+        view.render((10**6, 10**6))
+    for expected in ((0, 0), (0.25, 0.25)):
+        view.render(samples=1)
+        assert (view.time, view.delta_time) == expected
+    view.settings.environment.file = "nowhere.hdr"
+    with pytest.raises(easypbr.Error):
+        view.render(samples=1)
+    assert (view.time, view.delta_time) == (0.25, 0.25)
 
 
 def test_recordings_keep_their_own_time(cone, tmp_path):

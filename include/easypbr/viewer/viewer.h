@@ -71,7 +71,7 @@ class Viewer {
     app::Session& session();
 
     /// The time of animations; see Clock. Frames of the window and those that the recorder adds let it go on;
-    /// without both, images of render() do.
+    /// without both, images of render() do, unless they fail.
     app::Clock& clock();
     double time() const;
     double delta_time() const;

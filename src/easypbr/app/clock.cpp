@@ -4,46 +4,65 @@
 
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "easypbr/core/error.h"
 
 namespace easypbr::app {
+namespace {
+
+int64_t steady_ns() {
+    const auto passed = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::nanoseconds(passed).count();
+}
+
+}  // namespace
 
 void Clock::set_fixed_step(std::optional<double> step_s) {
     if (step_s && !(*step_s > 0 && std::isfinite(*step_s)))
         throw ArgumentError(fmt::format("fixed time step: expected above 0 seconds, got {}", *step_s));
-    set_time(time());
+    const bool goes_on = step_s.has_value() == step_.has_value();
+    count_from(time(), goes_on ? now_.tick_ns : std::nullopt);
     step_ = step_s;
 }
 
 void Clock::set_time(double time_s) {
     if (!std::isfinite(time_s))
         throw ArgumentError(fmt::format("time: expected finite seconds, got {}", time_s));
-    start_ = time_s;
-    passed_ = 0;
-    steps_ = 0;
-    delta_ = 0;
-    last_ns_.reset();
+    count_from(time_s, std::nullopt);
     if (on_set) on_set();
 }
 
+void Clock::count_from(double time_s, std::optional<int64_t> tick_ns) {
+    start_ = time_s;
+    now_ = before_ = {.tick_ns = tick_ns};
+}
+
 void Clock::tick() {
+    before_ = now_;
     advance();
     if (on_tick) on_tick();
 }
 
+void Clock::end_frame() {
+    if (!now_.tick_ns) now_.tick_ns = steady_ns();
+    tick();
+}
+
+void Clock::take_back() {
+    now_ = before_;
+    if (on_tick) on_tick();
+}
+
 void Clock::advance() {
-    if (step_) {
-        // Counted, not added up: the thousandth frame comes after a thousand steps to the last bit.
-        ++steps_;
-        delta_ = *step_;
-        return;
-    }
-    const auto passed = std::chrono::steady_clock::now().time_since_epoch();
-    const int64_t now_ns = std::chrono::nanoseconds(passed).count();
-    delta_ = last_ns_ ? double(now_ns - *last_ns_) * 1e-9 : 0;
-    passed_ += delta_;
-    last_ns_ = now_ns;
+    const int64_t tick_ns = steady_ns();
+    const std::optional<int64_t> last_ns = std::exchange(now_.tick_ns, tick_ns);
+    now_.delta = 0;
+    if (!last_ns) return;
+    // Counted, not added up: the thousandth frame comes after a thousand steps to the last bit.
+    now_.steps += 1;
+    now_.delta = step_ ? *step_ : double(tick_ns - *last_ns) * 1e-9;
+    now_.passed += now_.delta;
 }
 
 }  // namespace easypbr::app

@@ -117,7 +117,7 @@ void Recorder::add_frame(int times) {
     add_guarded([&] { recording.ring->make_room(); });
     recording.ring->draw(recording.picture, times);
     add_guarded([&] { recording.ring->take_read(); });
-    for (int i = 0; i < times; ++i) clock_.tick();
+    for (int i = 0; i < times; ++i) clock_.end_frame();
 }
 
 void Recorder::add_frame(Image picture) {
@@ -131,11 +131,12 @@ void Recorder::add_frame(Image picture) {
         recording.ring->drain();
         recording.queue->push(picture.channels() == 4 ? std::move(picture) : with_channels(picture, 4));
     });
-    clock_.tick();
+    clock_.end_frame();
 }
 
 std::unique_ptr<Recorder::Recording> Recorder::end() {
     clock_.set_fixed_step(recording_->step_before);
+    clock_.set_time(clock_.time());  // The frame there is yet to come.
     return std::move(recording_);
 }
 

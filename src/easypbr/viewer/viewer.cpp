@@ -305,8 +305,14 @@ void Viewer::pause() {
 
 Image Viewer::render(const app::PictureOptions& options) {
     // Without a window and a recording, which have frames of their own, each image is a frame.
-    if (!is_open() && !recorder.is_recording()) parts_->clock.tick();
-    return parts_->session.render(options);
+    if (is_open() || recorder.is_recording()) return parts_->session.render(options);
+    parts_->clock.tick();
+    try {
+        return parts_->session.render(options);
+    } catch (...) {
+        parts_->clock.take_back();
+        throw;
+    }
 }
 
 std::map<std::string, Image> Viewer::render_layers(const std::vector<std::string>& names,
