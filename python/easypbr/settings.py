@@ -92,7 +92,7 @@ class Settings(SettingsGroup):
         return json.loads(self._handle.settings_to_json())
 
 
-def _by_full_names(values: Mapping, prefix: str) -> dict[str, Any]:
+def _by_full_names(values: Mapping[str, Any], prefix: str) -> dict[str, Any]:
     named: dict[str, Any] = {}
     for name, value in values.items():
         full = prefix + name
