@@ -190,6 +190,27 @@ def test_edit_puts_the_copy_in_place_only_when_the_block_ends_well(square):
         mesh.edit("W")
 
 
+def test_an_edit_is_one_block_at_a_time(square):
+    mesh = Mesh(*square)
+    edit = mesh.edit("V")
+    with pytest.raises(easypbr.ArgumentError, match=r'mesh.edit\("V"\): expected __enter__\(\) first, got __exit__\(\)'):
+        edit.__exit__(None, None, None)
+    with edit as v:
+        with pytest.raises(easypbr.ArgumentError, match=r"expected one block at a time, got __enter__\(\) twice"):
+            edit.__enter__()
+        v[:, 2] = 3
+    assert (mesh.V[:, 2] == 3).all()
+    with pytest.raises(easypbr.ArgumentError, match="expected __enter__"):
+        edit.__exit__(None, None, None)
+    # One block after another is fine, also after a block that failed.
+    with pytest.raises(RuntimeError, match="stop"):
+        with edit as v:
+            raise RuntimeError("stop")
+    with edit as v:
+        v[:, 2] = 4
+    assert (mesh.V[:, 2] == 4).all()
+
+
 def test_assign_replaces_arrays_of_another_length_together(square):
     V, F = square
     mesh = Mesh(V, F)

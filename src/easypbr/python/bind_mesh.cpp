@@ -230,14 +230,19 @@ struct ArrayEdit {
     nb::object copy;
 
     nb::object enter() {
+        if (!copy.is_none()) refuse("expected one block at a time, got __enter__() twice");
         copy = nb::module_::import_("numpy").attr("array")(array->view(*mesh.snapshot()));
         return copy;
     }
     void exit(const nb::object& type, const nb::object&, const nb::object&) {
-        const nb::object edited = std::move(copy);
+        if (copy.is_none()) refuse("expected __enter__() first, got __exit__()");
+        const nb::object edited = std::exchange(copy, nb::none());
         if (!type.is_none()) return;
         const auto change = array->prepare(edited);
         released([&] { mesh.edit(change); });
+    }
+    [[noreturn]] void refuse(const char* what) const {
+        throw ArgumentError(fmt::format("mesh.edit(\"{}\"): {}", array->name, what));
     }
 };
 
