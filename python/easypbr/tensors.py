@@ -160,8 +160,8 @@ def _is_torch(what: Any) -> bool:
 def as_numpy(what: Any) -> Any:
     """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
     device, with or without gradients, or any object with DLPack. bfloat16 and other short floats that numpy lacks become
-    float32, and masked values NaN. Other objects are returned unchanged. Raises ArgumentError for tensors that are no
-    numpy array, and for masked values that are no floats."""
+    float32, and masked values NaN. Other objects are returned unchanged. Raises ArgumentError for tensors and objects with
+    DLPack that are no numpy array, and for masked values that are no floats."""
     if _is_torch(what) and hasattr(what, "detach"):
         return _of_tensor(what)
     if isinstance(what, np.ma.MaskedArray):
@@ -174,9 +174,9 @@ def as_numpy(what: Any) -> Any:
     if device in (1, 3):  # The memory of the CPU, pinned or not.
         try:
             return np.from_dlpack(what)
-        except (BufferError, RuntimeError, TypeError):
+        except (BufferError, RuntimeError, TypeError) as error:
             if not hasattr(what, "__array__"):
-                raise
+                raise ArgumentError(f"a {type(what).__qualname__}: expected numbers that numpy takes by DLPack: {error}") from error
     if hasattr(what, "get"):  # CuPy
         return what.get()
     return _known(np.asarray(what))
@@ -189,7 +189,7 @@ def _of_tensor(tensor: Any) -> NDArray[Any]:
         array: NDArray[Any] = (tensor.float() if is_short else tensor).numpy()
         return array
     except (TypeError, RuntimeError) as error:
-        raise ArgumentError(f"a tensor of {tensor.dtype}, {tensor.layout}: expected numbers that numpy has: {error}") from None
+        raise ArgumentError(f"a tensor of {tensor.dtype}, {tensor.layout}: expected numbers that numpy has: {error}") from error
 
 
 def _unmasked(array: Any) -> NDArray[Any]:

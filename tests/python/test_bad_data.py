@@ -164,3 +164,61 @@ def test_a_file_name_may_have_any_bytes(tmp_path, caplog):
         file.write(b"mtllib gr\xfcn.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     assert len(Mesh(tmp_path / "a.obj").F) == 1
     assert "gr\udcfcn.mtl" in caplog.text
+
+
+class NoArray:
+    """What raises when numpy makes an array of it."""
+
+    def __init__(self, error):
+        self._error = error
+
+    def __array__(self, dtype=None, copy=None):
+        raise self._error
+
+
+def uses_of_arrays(mesh, tmp_path):
+    """Calls that take an array each."""
+    return [
+        lambda array: setattr(mesh, "V", array),
+        lambda array: setattr(mesh, "L", array),
+        lambda array: setattr(mesh, "T_parent_mesh", array),
+        lambda array: mesh.assign(V=array),
+        lambda array: easypbr.Mesh(array),
+        lambda array: easypbr.Environment(array),
+        lambda array: easypbr.save_image(array, tmp_path / "a.png"),
+    ]
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), SystemExit(3), MemoryError("full"), OSError("gone"), RuntimeError("mine")])
+def test_what_an_object_raises_while_it_becomes_an_array_passes(square, tmp_path, error):
+    mesh = easypbr.Mesh(*square)
+    for use in uses_of_arrays(mesh, tmp_path):
+        with pytest.raises(type(error)) as raised:
+            use(NoArray(error))
+        assert raised.value is error
+    np.testing.assert_array_equal(mesh.V, square[0])
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("error", [TypeError("n\u00f6"), ValueError("n\u00f6"), OverflowError("n\u00f6")])
+def test_what_is_no_array_is_the_cause_of_an_argument_error(square, tmp_path, error):
+    for use in uses_of_arrays(easypbr.Mesh(*square), tmp_path):
+        with pytest.raises(easypbr.ArgumentError, match=": expected an array of numbers: n\u00f6$") as raised:
+            use(NoArray(error))
+        assert raised.value.__cause__ is error
+
+
+@pytest.mark.parametrize("error", [BufferError("on a GPU"), RuntimeError("on a GPU")])
+def test_dlpack_that_numpy_does_not_take_is_an_argument_error(square, error):
+    class OfDlpack:
+        def __dlpack_device__(self):
+            return (1, 0)
+
+        def __dlpack__(self, **_):
+            raise error
+
+    with pytest.raises(easypbr.ArgumentError, match="a .*OfDlpack: expected numbers that numpy takes by DLPack: on a GPU"):
+        easypbr.Mesh(*square).V = OfDlpack()
+    with pytest.raises(easypbr.ArgumentError, match="on a GPU") as raised:
+        easypbr.as_mesh(OfDlpack())
+    assert raised.value.__cause__ is error

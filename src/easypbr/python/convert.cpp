@@ -182,6 +182,13 @@ Eigen::MatrixXd exact_matrix(nb::handle object, int rows, int cols, const char* 
     return result;
 }
 
+/// Whether an exception says that an object is no array; others are the caller's, as KeyboardInterrupt and
+/// MemoryError are.
+bool says_no_array(const nb::python_error& error) {
+    return error.matches(PyExc_TypeError) || error.matches(PyExc_ValueError) ||
+           error.matches(PyExc_OverflowError);
+}
+
 nb::object numpy_array(nb::handle object, const char* what) {
     const nb::module_ numpy = nb::module_::import_("numpy");
     try {
@@ -191,8 +198,10 @@ nb::object numpy_array(nb::handle object, const char* what) {
             return numpy.attr("asarray")(nb::module_::import_("easypbr.tensors").attr("as_numpy")(object));
         return numpy.attr("asarray")(object);
     } catch (nb::python_error& error) {
-        throw ArgumentError(
-            fmt::format("{}: expected an array of numbers: {}", what, nb::str(error.value()).c_str()));
+        if (!says_no_array(error)) throw;
+        const nb::str reason(error.value());
+        nb::raise_from(error, nb::module_::import_("easypbr.errors").attr("ArgumentError"),
+                       "%s: expected an array of numbers: %U", what, reason.ptr());
     }
 }
 

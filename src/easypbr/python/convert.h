@@ -40,7 +40,7 @@ class PathOrArray : public nb::object {
 using AnyArray = nb::ndarray<nb::ro, nb::device::cpu>;
 
 /// The object as a numpy array of real numbers in this machine's byte order. `what` names it in messages.
-/// Throws ArgumentError for what is not numeric.
+/// Throws ArgumentError for what is not numeric, and what the object raises that says something else.
 nb::object numeric_object(nb::handle object, const char* what);
 AnyArray numeric_array(nb::handle object, const char* what);
 
