@@ -1,6 +1,7 @@
 """Ctrl-C ends what takes long at once and leaves nothing behind; threads that draw do not disturb the end of a program."""
 
 import asyncio
+import logging
 import os
 import signal
 import subprocess
@@ -217,6 +218,70 @@ def test_another_thread_is_not_interrupted(scene):
         time.sleep(5)
     thread.join()
     np.testing.assert_array_equal(pictures[0], Viewer((64, 48), scene=scene).render(samples=24))
+
+
+@pytest.fixture
+def two_warnings(tmp_path):
+    """A file whose reader logs two messages."""
+    path = tmp_path / "a.obj"
+    path.write_text("mtllib one.mtl\nmtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    return path
+
+
+class Failing(logging.Handler):
+    """Calls `fail` at the first message."""
+
+    def __init__(self, fail):
+        super().__init__()
+        self.fail, self.heard = fail, []
+
+    def emit(self, record):
+        self.heard.append(record.getMessage())
+        if len(self.heard) == 1:
+            self.fail()
+
+    def __enter__(self):
+        logging.getLogger("easypbr").addHandler(self)
+        return self
+
+    def __exit__(self, *_):
+        logging.getLogger("easypbr").removeHandler(self)
+        assert ["one.mtl" in text for text in self.heard] == [True, False], "each message comes once"
+
+
+@pytest.mark.parametrize("fail, expected", [
+    (lambda: signal.raise_signal(signal.SIGINT), KeyboardInterrupt()),
+    (lambda: sys.exit(3), SystemExit(3)),
+])  # fmt: skip
+def test_what_ends_the_program_passes_a_handler_of_messages(two_warnings, fail, expected):
+    with Failing(fail), pytest.raises(type(expected)) as raised:
+        Mesh(two_warnings)
+        time.sleep(5)
+        pytest.fail("it was lost")
+    assert raised.value.args == expected.args
+
+
+def test_what_is_wrong_in_a_handler_of_messages_is_told(two_warnings, monkeypatch):
+    told = []
+    monkeypatch.setattr(sys, "unraisablehook", told.append)
+    wrong = ValueError("wrong")
+
+    def fail():
+        raise wrong
+
+    with Failing(fail):
+        assert len(Mesh(two_warnings).V) == 3
+    assert [unraisable.exc_value for unraisable in told] == [wrong]
+
+
+def test_a_thread_s_exit_in_a_handler_of_messages_ends_no_other(two_warnings, monkeypatch):
+    told, read = [], []
+    monkeypatch.setattr(sys, "unraisablehook", lambda unraisable: told.append(unraisable.exc_type))
+    with Failing(lambda: sys.exit(3)):
+        thread = threading.Thread(target=lambda: read.append(Mesh(two_warnings)))
+        thread.start()
+        thread.join()
+    assert told == [SystemExit] and len(read) == 1
 
 
 DAEMON = """

@@ -1,7 +1,9 @@
 // Log messages reach Python's logging. They wait in a queue until the call that logged them has ended: the
 // sink runs on any thread, with locks held, where Python must not be entered.
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "easypbr/core/log.h"
@@ -24,6 +26,11 @@ int python_level(LogLevel level) {
     return level == LogLevel::debug ? 10 : level == LogLevel::info ? 20 : 30;
 }
 
+void deliver(const Message& message) {
+    const nb::object logger = nb::module_::import_("logging").attr("getLogger")("easypbr");
+    logger.attr("log")(python_level(message.level), "%s", message.text);
+}
+
 }  // namespace
 
 void deliver_log() {
@@ -32,14 +39,19 @@ void deliver_log() {
         const std::lock_guard lock(mutex);
         messages.swap(waiting);
     }
-    if (messages.empty()) return;
-    try {
-        const nb::object logger = nb::module_::import_("logging").attr("getLogger")("easypbr");
-        for (const Message& message : messages)
-            logger.attr("log")(python_level(message.level), "%s", message.text);
-    } catch (nb::python_error& error) {
-        error.discard_as_unraisable("easypbr: delivering log messages");
+    constexpr const char* context = "easypbr: delivering log messages";
+    std::optional<nb::python_error> ending;  // KeyboardInterrupt, SystemExit
+    for (const Message& message : messages) {
+        try {
+            deliver(message);
+        } catch (nb::python_error& error) {
+            if (ending || error.matches(PyExc_Exception))
+                error.discard_as_unraisable(context);
+            else
+                ending.emplace(std::move(error));
+        }
     }
+    if (ending) raise_later(std::move(*ending), context);
 }
 
 void bind_log() {

@@ -33,7 +33,8 @@ void bind_camera_path(nb::module_& module);
 void bind_viewer(nb::module_& module);
 void bind_ground_truth(nb::module_& module);
 
-/// Hands the messages logged so far to Python. Needs the GIL; no lock of ours may be held.
+/// Hands the messages logged so far to Python. Needs the GIL; no lock of ours may be held. What a handler of
+/// them raises to end the program is raised when the main thread is back in Python; the call is not undone.
 void deliver_log();
 
 /// Runs work without the GIL; see Job for how it is interrupted. What it logs reaches Python afterwards, when

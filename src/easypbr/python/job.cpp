@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <thread>
+#include <utility>
 
 namespace nb = nanobind;
 
@@ -94,6 +96,13 @@ void stay_if_ending() {
     while (true) pause();
 }
 
+/// Called by the interpreter, between two steps of the main thread.
+int raise_pending(void* pending) {
+    const std::unique_ptr<nb::python_error> error(static_cast<nb::python_error*>(pending));
+    error->restore();
+    return -1;
+}
+
 }  // namespace
 
 Job::Job() {
@@ -130,6 +139,14 @@ Job::Running::Running() {
 
 Job::Running::~Running() {
     stay_if_ending();
+}
+
+void raise_later(nb::python_error error, const char* context) {
+    auto pending = std::make_unique<nb::python_error>(std::move(error));
+    if (on_main_thread() && Py_AddPendingCall(raise_pending, pending.get()) == 0)
+        pending.release();  // raise_pending() owns it.
+    else
+        pending->discard_as_unraisable(context);
 }
 
 void bind_jobs() {

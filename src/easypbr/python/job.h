@@ -1,6 +1,8 @@
 // What Python may do to a call that works without its lock: interrupt it by Ctrl-C, and end while it works.
 #pragma once
 
+#include <nanobind/nanobind.h>
+
 #include <csignal>
 #include <optional>
 
@@ -45,6 +47,10 @@ class Job {
 class Uninterrupted {
     InterruptScope scope_{{}};
 };
+
+/// Has the main thread raise an exception once it is back in Python, for calls that must not throw. Needs the
+/// GIL. On another thread the exception goes to sys.unraisablehook, with the context.
+void raise_later(nanobind::python_error error, const char* context);
 
 /// Has the interpreter end what runs on other threads before it ends itself.
 void bind_jobs();
