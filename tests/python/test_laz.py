@@ -71,3 +71,15 @@ def test_without_lazrs_the_message_names_it(files, monkeypatch):
     monkeypatch.setitem(sys.modules, "lazrs", None)
     with pytest.raises(easypbr.FormatError, match=r"a\.laz: .*pip install lazrs"):
         Mesh(files[1])
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
+def test_what_does_not_tell_of_the_file_passes(files, monkeypatch, error):
+    """lazrs works with Python's lock held, so that Ctrl-C is raised within it."""
+
+    def decompress(*_):
+        raise error
+
+    monkeypatch.setattr(lazrs, "decompress_points", decompress)
+    with pytest.raises(error):
+        Mesh(files[1])

@@ -1,5 +1,4 @@
 // Gives the readers a decompressor of LAZ: easypbr.laz, which asks lazrs.
-#include "easypbr/core/error.h"
 #include "easypbr/io/mesh/las/laz.h"
 #include "easypbr/python/bindings.h"
 
@@ -16,7 +15,7 @@ std::string decompress(std::string_view laszip, std::string_view points, size_t 
         const nb::bytes bytes = nb::cast<nb::bytes>(result);
         return {bytes.c_str(), bytes.size()};
     } catch (const nb::python_error& error) {
-        throw Error(nb::cast<std::string>(nb::str(error.value())));
+        throw_as_own(error);
     }
 }
 

@@ -5,7 +5,6 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/recorder.h"
-#include "easypbr/core/error.h"
 #include "easypbr/drawing/line_drawing.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
@@ -110,7 +109,7 @@ fs::path find_ffmpeg() {
     try {
         return nb::cast<std::string>(nb::module_::import_("easypbr.video").attr("find_ffmpeg")());
     } catch (const nb::python_error& error) {
-        throw Error(nb::cast<std::string>(nb::str(error.value())));
+        throw_as_own(error);
     }
 }
 

@@ -6,8 +6,13 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <new>
+#include <string>
 #include <thread>
 #include <utility>
+
+#include "easypbr/core/error.h"
+#include "easypbr/python/text.h"
 
 namespace nb = nanobind;
 
@@ -147,6 +152,12 @@ void raise_later(nb::python_error error, const char* context) {
         pending.release();  // raise_pending() owns it.
     else
         pending->discard_as_unraisable(context);
+}
+
+void throw_as_own(const nb::python_error& error) {
+    if (error.matches(PyExc_KeyboardInterrupt)) throw Interrupted();
+    if (error.matches(PyExc_MemoryError)) throw std::bad_alloc();
+    throw Error(nb::cast<std::string>(nb::str(error.value())));
 }
 
 void bind_jobs() {

@@ -52,6 +52,11 @@ class Uninterrupted {
 /// GIL. On another thread the exception goes to sys.unraisablehook, with the context.
 void raise_later(nanobind::python_error error, const char* context);
 
+/// Throws what a function of Python's raised, which the library called, as the library's own exception:
+/// Interrupted for KeyboardInterrupt, std::bad_alloc for MemoryError, else an Error with its text. Needs the
+/// GIL.
+[[noreturn]] void throw_as_own(const nanobind::python_error& error);
+
 /// Has the interpreter end what runs on other threads before it ends itself.
 void bind_jobs();
 
