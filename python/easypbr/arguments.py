@@ -27,3 +27,5 @@ def real_of(name: str, value: Any, what: str = "a number") -> float:
         return float(value + 0)  # float() alone takes text.
     except TypeError:
         raise ArgumentError(f"{name}: expected {what}, got {value!r}") from None
+    except OverflowError:
+        raise ArgumentError(f"{name}: expected {what} in the range of float64, got a larger number") from None

@@ -98,7 +98,7 @@ def _looking_at(handle: "_easypbr.ViewerHandle", position: Any, target: Any, up:
 def _set_pose(handle: "_easypbr.ViewerHandle", camera: Any) -> None:
     try:
         matrix = np.asarray(as_numpy(camera), dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"camera: {_EXPECTED}; got a {type(camera).__name__}") from None
     if matrix.shape != (4, 4):
         shape = " x ".join(map(str, matrix.shape)) or "a number"

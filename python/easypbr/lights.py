@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from . import _easypbr
+from .arguments import real_of
 from .errors import ArgumentError
 
 _STUDIO = ("key", "fill", "rim")
@@ -66,7 +67,7 @@ class StudioLight:
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "color" and not isinstance(value, str):
-            value = tuple(map(_encoded, value))
+            value = tuple(_encoded(real_of(self._full(name), c)) for c in value)
         self._handle.set_setting(self._full(name), value)
 
     def __dir__(self) -> list[str]:

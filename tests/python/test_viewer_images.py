@@ -85,6 +85,18 @@ def test_what_is_no_number_is_told_by_its_name(view):
             set_it()
 
 
+def test_numbers_beyond_float64_are_told_by_their_name(view):
+    # The largest float64 is 1.8e308.
+    too_large = 10**400
+    for set_it, name in ((lambda: setattr(view, "time", too_large), "time"),
+                         (lambda: setattr(view, "animation_time", -too_large), "animation_time"),
+                         (lambda: view.play(speed=too_large), "speed"),
+                         (lambda: setattr(view.lights["key"], "color", (too_large, 0, 0)), "lights.key.color"),
+                         (lambda: setattr(view, "camera", [[too_large] * 4] * 4), "camera")):
+        with pytest.raises(easypbr.ArgumentError, match=f"^{name}: expected "):
+            set_it()
+
+
 @pytest.mark.parametrize("options", [
     {"scale": 0}, {"scale": -1}, {"scale": float("nan")}, {"scale": 1e-3}, {"scale": 5}, {"size": (0, 5)}, {"size": (-3, 5)},
 ])
