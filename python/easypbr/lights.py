@@ -51,6 +51,8 @@ class StudioLight:
         return self._prefix + name
 
     def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
         value = self._handle.get_setting(self._full(name))
         if isinstance(value, (_easypbr.Automatic, _easypbr.Follow)):
             # What was inferred, so that `intensity *= 2` means what it says.

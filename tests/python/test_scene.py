@@ -1,3 +1,5 @@
+import copy
+
 import numpy as np
 import pytest
 
@@ -62,6 +64,16 @@ def test_added_lights(size):
         view.add_light("x", intensity=-1)
     with pytest.raises(AttributeError):
         view.add_light("x", brightness=1)
+
+
+def test_copies_of_lights_are_the_same_lights(size):
+    view = Viewer(size, scene=Scene())
+    view.add_light("lamp", type="point")
+    for name in ("key", "lamp"):
+        copied = copy.copy(view.lights[name])
+        copied.intensity = 7
+        assert view.lights[name].intensity == 7
+        assert copied.intensity == 7
 
 
 def test_studio_lights_are_settings(size):
