@@ -176,7 +176,8 @@ def as_numpy(what: Any) -> Any:
             return np.from_dlpack(what)
         except (BufferError, RuntimeError, TypeError) as error:
             if not hasattr(what, "__array__"):
-                raise ArgumentError(f"a {type(what).__qualname__}: expected numbers that numpy takes by DLPack: {error}") from error
+                kind = type(what).__qualname__
+                raise ArgumentError(f"a {kind}: expected numbers that numpy takes by DLPack: {error}") from error
     if hasattr(what, "get"):  # CuPy
         return what.get()
     return _known(np.asarray(what))

@@ -189,7 +189,9 @@ def uses_of_arrays(mesh, tmp_path):
     ]
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt(), SystemExit(3), MemoryError("full"), OSError("gone"), RuntimeError("mine")])
+@pytest.mark.parametrize("error", [
+    KeyboardInterrupt(), SystemExit(3), MemoryError("full"), OSError("gone"), RuntimeError("mine"),
+])  # fmt: skip
 def test_what_an_object_raises_while_it_becomes_an_array_passes(square, tmp_path, error):
     mesh = easypbr.Mesh(*square)
     for use in uses_of_arrays(mesh, tmp_path):
