@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "easypbr/scene/normals.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::render {
