@@ -241,7 +241,7 @@ void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Read&& 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
     const auto blocks = std::make_unique_for_overwrite<std::array<Block, 3>>();  // too large for stacks
-    auto& [lit, caught, extended] = *blocks;
+    Block &lit = (*blocks)[0], &caught = (*blocks)[1], &extended = (*blocks)[2];
     const auto sort = [&](int x, int y, uint32_t index, uint8_t kind, CaughtTile& of_tile) {
         if (kind == uint8_t(SurfaceKind::extended))
             extended.add(pixels, x, y, index);
