@@ -149,7 +149,7 @@ Job::Running::~Running() {
 void raise_later(nb::python_error error, const char* context) {
     auto pending = std::make_unique<nb::python_error>(std::move(error));
     if (on_main_thread() && Py_AddPendingCall(raise_pending, pending.get()) == 0)
-        pending.release();  // raise_pending() owns it.
+        static_cast<void>(pending.release());  // raise_pending() owns it.
     else
         pending->discard_as_unraisable(context);
 }

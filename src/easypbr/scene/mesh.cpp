@@ -95,7 +95,7 @@ void Mesh::set_material(const Material& material, int index) {
 }
 
 void Mesh::add_scalar(const std::string& name, Array1f values) {
-    add_scalars({ScalarArray{name, std::move(values)}});
+    add_scalars({ScalarArray{name, values}});
 }
 
 void Mesh::add_scalars(const std::vector<ScalarArray>& scalars) {
