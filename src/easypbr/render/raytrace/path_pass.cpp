@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <memory>
 #include <span>
 #include <utility>
 
@@ -17,9 +16,9 @@
 namespace easypbr::render {
 namespace {
 
-/// Pixels whose paths are traced together. Small pictures have lower blocks, for many threads to share.
-constexpr int block_width = 64, block_height = 64, low_block_height = 16;
-constexpr int small_picture = 512 * 512;
+/// Pixels whose paths are traced together. Rays that are traced in packets round by what is beside them:
+/// tiles of a picture have the blocks that it has itself.
+constexpr int block_width = 64, block_height = 16;
 
 bool is_catcher(uint8_t kind) {
     return kind == uint8_t(SurfaceKind::ground_catcher);
@@ -240,8 +239,7 @@ void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Read&& 
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
-    const auto blocks = std::make_unique_for_overwrite<std::array<Block, 3>>();  // too large for stacks
-    Block &lit = (*blocks)[0], &caught = (*blocks)[1], &extended = (*blocks)[2];
+    Block lit, caught, extended;
     const auto sort = [&](int x, int y, uint32_t index, uint8_t kind, CaughtTile& of_tile) {
         if (kind == uint8_t(SurfaceKind::extended))
             extended.add(pixels, x, y, index);
@@ -389,14 +387,12 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     static_assert(side % FireflyFilter::cell == 0);
     const int left = area.x / side * side, top = area.y / side * side;
     const int right = area.x + area.width, bottom = area.y + area.height;
-    const int height =
-        frame.size.x() * int64_t(frame.size.y()) < small_picture ? low_block_height : block_height;
     const int columns = (right - left + block_width - 1) / block_width,
-              rows = (bottom - top + height - 1) / height;
+              rows = (bottom - top + block_height - 1) / block_height;
     fireflies_.begin_frame(frame.size, most_spread(frame));
     parallel_for(size_t(std::max(0, columns * rows)), 1, [&](size_t i) {
-        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * height;
-        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(height, bottom - y)});
+        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * block_height;
+        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(block_height, bottom - y)});
     });
     spread_fireflies(pixels);
 }
