@@ -112,8 +112,7 @@ void bind_image(nb::module_& module) {
         },
         nb::arg("path"), nb::arg("size") = nb::none(), nb::arg("transparent") = false,
         "Raises if an image (of this size, transparent) cannot be written there; returns whether it will "
-        "hold linear "
-        "values.");
+        "hold linear values.");
 }
 
 }  // namespace easypbr::python

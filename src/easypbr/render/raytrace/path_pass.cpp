@@ -16,8 +16,8 @@
 namespace easypbr::render {
 namespace {
 
-/// Pixels whose paths are traced together. Rays that are traced in packets round by what is beside them:
-/// tiles of a picture have the blocks that it has itself.
+/// Pixels whose paths are traced together. Some pixels' values depend on the block: tiles of a picture, which
+/// begin at multiples of these, have the blocks that it has itself.
 constexpr int block_width = 64, block_height = 16;
 
 bool is_catcher(uint8_t kind) {
