@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -16,9 +17,10 @@
 namespace easypbr::render {
 namespace {
 
-/// Pixels whose paths are traced together. Some pixels' values depend on the block: tiles of a picture, which
-/// begin at multiples of these, have the blocks that it has itself.
-constexpr int block_width = 64, block_height = 16;
+/// Pixels whose paths are traced together. Small pictures have lower blocks, for many threads to share.
+constexpr int block_width = 64, block_height = 64, low_block_height = 16;
+constexpr int small_picture = 512 * 512;
+static_assert(block_height % SampledTiles::side == 0 && low_block_height % SampledTiles::side == 0);
 
 bool is_catcher(uint8_t kind) {
     return kind == uint8_t(SurfaceKind::ground_catcher);
@@ -222,10 +224,9 @@ void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Read&& 
     constexpr int rows_ahead = 2;
     const int right = block.x + block.width, bottom = block.y + block.height;
     const SampledTiles* const tiles = pixels.starts.tiles;
-    for (int left = block.x; left < right; left += SampledTiles::side) {
-        if (tiles && tiles->has_ended(tiles->tile_at(left, block.y))) continue;
-        CaughtTile caught(*this, left, block.y);
-        for (int y = block.y; y < bottom; ++y) {
+    const auto each_of_tile = [&](int left, int top) {
+        CaughtTile caught(*this, left, top);
+        for (int y = top; y < std::min(top + SampledTiles::side, bottom); ++y) {
             for (const void* pixel : read(left, y + rows_ahead)) __builtin_prefetch(pixel);
             for (int x = left; x < std::min(left + SampledTiles::side, right); ++x) {
                 const float* depth = pixels.depth.at(x, y);
@@ -234,12 +235,16 @@ void PathPass::each_traced(const Pixels& pixels, const PixelRect& block, Read&& 
                 visit(x, y, index, (*pixels.material.at(x, y))[3], caught);
             }
         }
-    }
+    };
+    for (int top = block.y; top < bottom; top += SampledTiles::side)
+        for (int left = block.x; left < right; left += SampledTiles::side)
+            if (!tiles || !tiles->has_ended(tiles->tile_at(left, top))) each_of_tile(left, top);
 }
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
-    Block lit, caught, extended;
+    const auto blocks = std::make_unique_for_overwrite<std::array<Block, 3>>();  // too large for stacks
+    Block &lit = (*blocks)[0], &caught = (*blocks)[1], &extended = (*blocks)[2];
     const auto sort = [&](int x, int y, uint32_t index, uint8_t kind, CaughtTile& of_tile) {
         if (kind == uint8_t(SurfaceKind::extended))
             extended.add(pixels, x, y, index);
@@ -387,12 +392,14 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     static_assert(side % FireflyFilter::cell == 0);
     const int left = area.x / side * side, top = area.y / side * side;
     const int right = area.x + area.width, bottom = area.y + area.height;
+    const int height =
+        frame.size.x() * int64_t(frame.size.y()) < small_picture ? low_block_height : block_height;
     const int columns = (right - left + block_width - 1) / block_width,
-              rows = (bottom - top + block_height - 1) / block_height;
+              rows = (bottom - top + height - 1) / height;
     fireflies_.begin_frame(frame.size, most_spread(frame));
     parallel_for(size_t(std::max(0, columns * rows)), 1, [&](size_t i) {
-        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * block_height;
-        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(block_height, bottom - y)});
+        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * height;
+        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(height, bottom - y)});
     });
     spread_fireflies(pixels);
 }
