@@ -27,14 +27,19 @@ class BackgroundImage {
         : image_(std::move(image)), name_(std::move(name)) {}
 
     const std::shared_ptr<const Image>& image() const { return image_; }
-    /// Linear light, premultiplied by alpha; of half the size, or less, where a side is longer than
-    /// `most_side`.
-    const Target& light(int most_side);
+    /// Linear light, premultiplied by alpha: halved as long as it has two texels for a pixel of a picture
+    /// that it covers, or a side longer than `most_side`.
+    const Target& light(const Vec2i& picture, int most_side);
+    /// Texture coordinates of that light by those of the image: halving leaves out odd lines at the end.
+    Vec2 uv_scale() const;
 
   private:
+    int halvings(const Vec2i& picture, int most_side) const;
+
     std::shared_ptr<const Image> image_;
     std::string name_;
     Target light_;
+    int halvings_ = 0;  ///< of light_
 };
 
 /// A picture whose radiance is in host memory alone is finished there, natively; any other by the driver.
