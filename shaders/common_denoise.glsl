@@ -6,6 +6,9 @@ uniform vec2 u_size;
 // Falls of the weights: over the square of the normals' difference (that of cos^128), of the reflectances', and over the
 // logarithm of the depth beyond the surface's own slope.
 const float normal_fall = 64.0 * 4.0;  // of normals that are brought to 0 to 1
+// Light whose noise is larger than what turned normals change is taken from them too: surfaces may turn so fast that
+// hardly a pixel around is alike.
+const float noisy_fall = 1.0;
 const float color_fall = 30.0;
 const float depth_fall = 80.0;
 
@@ -23,6 +26,7 @@ struct Guides {
     float depth;               // log2
     vec2 slope;                // of the depth, per pixel
     float frames;
+    float normal_fall;
 };
 
 Guides guides_at(ivec2 here) {
@@ -33,9 +37,15 @@ Guides guides_at(ivec2 here) {
     g.reflectance = unpacked(guides.g);
     g.depth = guides.b;
     g.frames = guides.a;
+    g.normal_fall = normal_fall;
     g.slope = vec2(slope(depth_at(max(here - ivec2(1, 0), ivec2(0))), g.depth, depth_at(min(here + ivec2(1, 0), last))),
                    slope(depth_at(max(here - ivec2(0, 1), ivec2(0))), g.depth, depth_at(min(here + ivec2(0, 1), last))));
     return g;
+}
+
+// For light of that luminance and variance.
+float fall_of_normals(float bright, float variance) {
+    return min(normal_fall, noisy_fall * bright * bright / max(variance, 1e-20));
 }
 
 // The exponent of the weight of a place of the picture, `away` pixels to the sides.
@@ -43,7 +53,7 @@ float unlikeness(Guides own, vec4 guides, vec2 away) {
     vec3 turned = unpacked(guides.r) - own.normal, dyed = unpacked(guides.g) - own.reflectance;
     float sloped = dot(own.slope, away);
     float apart = max(abs(guides.b - own.depth) - 2.0 * sloped, 0.0);
-    return normal_fall * dot(turned, turned) + color_fall * dot(dyed, dyed) + depth_fall * apart;
+    return own.normal_fall * dot(turned, turned) + color_fall * dot(dyed, dyed) + depth_fall * apart;
 }
 
 bool is_inside(ivec2 at) { return at.x >= 0 && at.y >= 0 && at.x < int(u_size.x) && at.y < int(u_size.y); }

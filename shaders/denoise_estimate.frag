@@ -12,6 +12,9 @@ const float doubt = 2.0;
 const float spot_deviations = 12.0;
 const float own_deviations = 4.0;
 
+// Over the square of normals' difference, where noise is looked for.
+const float wide_fall = 8.0;
+
 // What is left of a luminance with the sums of it, of squares and of weights over the pixels around.
 float limited(float bright, float variance, float sum, float squares, float weights) {
     float mean = sum / max(weights, 1e-10), around = max(squares / max(weights, 1e-10) - mean * mean, 0.0);
@@ -19,9 +22,32 @@ float limited(float bright, float variance, float sum, float squares, float weig
     return weights > 3.0 && bright > most ? most / bright : 1.0;
 }
 
+// The noise of light around, of surfaces that are turned farther too: see fall_of_normals().
+float fall_around(ivec2 here, Guides own) {
+    ivec2 last = ivec2(u_size) - 1;
+    own.normal_fall = wide_fall;
+    float sum = 0.0, noise = 0.0, weights = 0.0;
+    for (int y = -reach; y <= reach; ++y) {
+        for (int x = -reach; x <= reach; ++x) {
+            ivec2 at = here + ivec2(x, y);
+            bool inside = is_inside(at);
+            at = clamp(at, ivec2(0), last);
+            vec4 guides = texelFetch(u_guides, at, 0), light = texelFetch(u_light, at, 0);
+            float weight = exp(-unlikeness(own, guides, vec2(float(abs(x)), float(abs(y)))));
+            weight = inside && guides.a > 0.0 ? weight : 0.0;
+            sum += weight * luminance(light.rgb);
+            noise += weight * light.a;
+            weights += weight;
+        }
+    }
+    float scale = 1.0 / max(weights, 1e-10);
+    return fall_of_normals(sum * scale, noise * scale);
+}
+
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy), last = ivec2(u_size) - 1;
     Guides own = guides_at(here);
+    own.normal_fall = fall_around(here, own);
     vec4 light_here = texelFetch(u_light, here, 0);
     float sum = 0.0, squares = 0.0, noise = 0.0, noise_of_sum = 0.0, weights = 0.0, weights2 = 0.0;
     for (int y = -reach; y <= reach; ++y) {

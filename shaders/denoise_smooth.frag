@@ -28,6 +28,7 @@ void main() {
     Guides own = guides_at(here);
     vec4 compared_here = compared(here, texelFetch(u_light, here, 0));
     float bright = compared_here.r, spread = deviations * deviations * compared_here.g + 1e-10;
+    own.normal_fall = fall_of_normals(bright, compared_here.b);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     int reach = has_estimate ? 2 : 1;
