@@ -96,9 +96,12 @@ def test_pyvista_stand_in(square):
     check(as_mesh(mesh), square)
     np.testing.assert_array_equal(as_mesh(mesh).N, V)
     mesh.faces = np.array([4, 0, 1, 2, 3])
-    mesh.is_all_triangles = lambda: False
-    mesh.triangulate = lambda: types.SimpleNamespace(points=V, faces=faces, point_data={}, n_points=4)
+    mesh.point_data = {}
     check(as_mesh(mesh), square)
+    np.testing.assert_array_equal(as_mesh(mesh).source_face, [0, 0])
+    mesh.faces = np.array([3, 0, 1, 2, 4, 0, 1, 2, 3])
+    np.testing.assert_array_equal(as_mesh(mesh).F, [[0, 1, 2], [0, 1, 2], [0, 2, 3]])
+    np.testing.assert_array_equal(as_mesh(mesh).source_face, [0, 1, 1])
 
 
 def test_real_trimesh(square):
@@ -125,6 +128,11 @@ def test_real_pyvista(square):
     check(as_mesh(mesh), square)
     quad = pyvista.PolyData(V, np.array([4, 0, 1, 2, 3]))
     assert as_mesh(quad).F.shape == (2, 3)
+    np.testing.assert_array_equal(as_mesh(quad).source_face, [0, 0])
+    assert len(as_mesh(mesh).source_face) == 0
+    quad.cell_data["RGB"] = np.array([[255, 0, 0]], np.uint8)
+    assert len(as_mesh(quad).V) == 4, "triangles of a polygon share its corners"
+    np.testing.assert_array_equal(as_mesh(quad).source_face, [0, 0])
     # The surface of a grid of one cell has six sides of two triangles each.
     assert as_mesh(pyvista.ImageData(dimensions=(2, 2, 2))).F.shape == (12, 3)
     cloud = as_mesh(pyvista.PolyData(V))

@@ -156,6 +156,61 @@ def test_values_of_polygons_stay_theirs_with_as_many_triangles_as_vertices():
     assert len(as_mesh(arrays | {"heat": at_vertices}).V) == 12, "nothing to tell apart"
 
 
+# Two quads side by side, beyond them a triangle; a path of corners round each.
+STRIP_V = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0], [3, 0, 0]], float)
+STRIP_F = [[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 5]]
+
+
+def test_polygons_are_remembered():
+    ragged, quads = as_mesh((STRIP_V, STRIP_F)), as_mesh((STRIP_V, np.array(STRIP_F[:2])))
+    np.testing.assert_array_equal(ragged.source_face, [0, 0, 1, 1, 2])
+    np.testing.assert_array_equal(quads.source_face, [0, 0, 1, 1])
+    np.testing.assert_array_equal(as_mesh({"V": STRIP_V, "F": STRIP_F}).source_face, [0, 0, 1, 1, 2])
+    given = as_mesh({"V": STRIP_V, "source_face": [0, 0, 1, 1], "F": quads.F, "area": [1.0, 2.0]})
+    np.testing.assert_array_equal(given.source_face, [0, 0, 1, 1])
+    np.testing.assert_array_equal(given.scalars["area"], [1, 1, 2, 2])
+    assert len(as_mesh((STRIP_V, quads.F)).source_face) == 0, "triangles are polygons themselves"
+    with pytest.raises(easypbr.ArgumentError, match="source_face: expected triangles beside it"):
+        as_mesh({"V": STRIP_V, "F": STRIP_F, "source_face": [0, 0, 1, 1, 2]})
+
+
+def test_wireframes_of_polygons_are_those_of_the_same_file(tmp_path):
+    lines = [f"v {x} {y} {z}" for x, y, z in STRIP_V] + ["f " + " ".join(str(i + 1) for i in face) for face in STRIP_F]
+    (tmp_path / "strip.obj").write_text("\n".join(lines) + "\n")
+    look = {"show_wireframe": True, "camera": "front"}
+    of_file = drawn(tmp_path / "strip.obj", **look)
+    np.testing.assert_array_equal(drawn((STRIP_V, STRIP_F), **look), of_file)
+    np.testing.assert_array_equal(drawn({"V": STRIP_V, "F": STRIP_F}, **look), of_file)
+    assert (drawn((STRIP_V, as_mesh((STRIP_V, STRIP_F)).F), **look) != of_file).any(), "triangles have diagonals"
+
+
+def test_values_of_polygons_are_taken_afterwards():
+    mesh = as_mesh((STRIP_V, STRIP_F))  # 7 vertices, 5 triangles, 3 polygons
+    mesh.L = [5, 6, 7]
+    mesh.scalars["area"] = [1.0, 2.0, 0.5]
+    np.testing.assert_array_equal(mesh.L, [5, 5, 6, 6, 7])
+    np.testing.assert_array_equal(mesh.scalars["area"], [1, 1, 2, 2, 0.5])
+    mesh.L = range(5)
+    np.testing.assert_array_equal(mesh.L, range(5))
+    counts = "expected 7 rows, one per vertex, or 5, one per face, or 3, one per polygon, or none; got 4 x 1"
+    with pytest.raises(easypbr.ArgumentError, match=f"array L: {counts}"):
+        mesh.L = [0, 1, 2, 3]
+    np.testing.assert_array_equal(mesh.L, range(5))
+    with pytest.raises(easypbr.ArgumentError, match="source_face: expected 5 rows, one per face, or none; got 3 x 1"):
+        mesh.source_face = [0, 1, 2]
+    with pytest.raises(easypbr.ArgumentError, match="expected numbers of polygons from 0 on, got -1 in row 1 of 5"):
+        mesh.source_face = [0, -1, 1, 1, 2]
+    mesh.F = mesh.F
+    assert len(mesh.source_face) == 0
+
+
+def test_faces_and_what_belongs_to_them_are_assigned_in_any_order():
+    mesh = Mesh(STRIP_V, [[0, 1, 4]])
+    mesh.assign(source_face=[0, 0], L=[3], F=[[0, 1, 4], [0, 4, 3]])
+    np.testing.assert_array_equal(mesh.source_face, [0, 0])
+    np.testing.assert_array_equal(mesh.L, [3, 3])
+
+
 # Dicts and tables.
 
 

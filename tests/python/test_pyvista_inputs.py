@@ -68,6 +68,13 @@ def test_as_many_cells_as_points_keep_their_values(pyvista):
     assert len(mesh.V) == 12
 
 
+def test_triangles_of_a_strip_are_polygons_of_their_own(pyvista):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 2, 0], [2, 0, 0], [2, 1, 0]], float)
+    data = pyvista.PolyData(corners, faces=[4, 1, 5, 6, 3], strips=[5, 0, 1, 2, 3, 4])
+    polygons = as_mesh(data).source_face
+    assert sorted(np.unique(polygons, return_counts=True)[1]) == [1, 1, 1, 2]
+
+
 def test_vectors_are_scalars_and_what_is_lost_is_said(pyvista, caplog):
     ball = pyvista.Sphere()
     ball["wind"] = ball.points * 2

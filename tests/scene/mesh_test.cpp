@@ -104,6 +104,53 @@ TEST(Mesh, LabelsAndScalarsBelongToVerticesOrFaces) {
     EXPECT_EQ(element_of(data, 3), PerElement::vertex);
 }
 
+// A quad of two triangles and a triangle; 6 vertices, of which one is in no face.
+MeshData two_polygons() {
+    MeshData data;
+    data.V = Positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {9, 9, 9}};
+    data.F = Faces{{0, 1, 2}, {0, 2, 3}, {1, 4, 2}};
+    data.source_face = Array1i(Array1i::Dense{{0}, {0}, {1}});
+    return data;
+}
+
+TEST(Mesh, ValuesOfPolygonsBecomeThoseOfTheirTriangles) {
+    Mesh mesh(two_polygons());
+    mesh.set_L(Array1i(Array1i::Dense{{4}, {7}}));
+    mesh.add_scalar("area", Array1f(Array1f::Dense{{1}, {0.5f}}));
+    EXPECT_EQ(Array1i::Dense(mesh.L()), (Array1i::Dense{{4}, {4}, {7}}));
+    EXPECT_EQ(Array1f::Dense(mesh.scalar("area")), (Array1f::Dense{{1}, {1}, {0.5f}}));
+    MeshData data = two_polygons();
+    data.L = Array1i(Array1i::Dense{{4}, {7}});
+    EXPECT_EQ(Array1i::Dense(Mesh(data).L()), (Array1i::Dense{{4}, {4}, {7}}));
+    try {
+        mesh.set_L(Array1i(Array1i::Dense::Zero(4)));
+        ADD_FAILURE() << "expected an error";
+    } catch (const ArgumentError& error) {
+        EXPECT_STREQ(error.what(),
+                     "mesh array L: expected 6 rows, one per vertex, or 3, one per face, or 2, one per "
+                     "polygon, or none; got 4 x 1");
+    }
+}
+
+TEST(Mesh, ValuesOfPolygonsStayThoseOfFacesWhereTheNumbersAreEqual) {
+    MeshData data = two_polygons();
+    data.V = Positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+    data.F = Faces{{0, 1, 2}, {0, 2, 1}, {1, 2, 0}};  // as many as vertices
+    data.scalars = {{"height", Array1f(Array1f::Dense{{1}, {2}, {3}})}};
+    Mesh mesh(data);
+    mesh.set_L(Array1i(Array1i::Dense{{4}, {7}}));
+    EXPECT_EQ(Array1i::Dense(mesh.L()), (Array1i::Dense{{4}, {4}, {7}}));
+    ASSERT_EQ(mesh.V().rows(), 4);
+    EXPECT_EQ(mesh.V().row(3), mesh.V().row(2));
+    EXPECT_EQ(Array1f::Dense(mesh.scalar("height")), (Array1f::Dense{{1}, {2}, {3}, {3}}));
+    EXPECT_EQ(element_of(*mesh.snapshot(), mesh.L().rows()), PerElement::face);
+}
+
+TEST(Mesh, RefusesPolygonsBelowZero) {
+    EXPECT_EQ(message_of([](MeshData& d) { d.source_face = Array1i(Array1i::Dense{{-1}}); }),
+              "mesh array source_face: expected numbers of polygons from 0 on, got -1 in row 0 of 1");
+}
+
 TEST(Mesh, NamesLabelsAndScalarsThatDoNotFit) {
     EXPECT_EQ(message_of([](MeshData& d) { d.L = Array1i(Array1i::Dense::Zero(2)); }),
               "mesh array L: expected 3 rows, one per vertex, or 1, one per face, or none; got 2 x 1");

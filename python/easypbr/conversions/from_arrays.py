@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .._easypbr import Mesh
 from ..errors import ArgumentError, UnknownNameError
 from ..tensors import as_numpy
-from .maker import PER_VERTEX, Maker, colors, fan, triangles
+from .maker import Maker, colors, fan
 
 #: What arrays of a mesh are called: here, in NPZ files, in pandas and in Polyscope. The first is Mesh's own name.
 NAMES: dict[str, tuple[str, ...]] = {
@@ -26,7 +26,7 @@ NAMES: dict[str, tuple[str, ...]] = {
 }
 _CALLED = {word: name for name, words in NAMES.items() for word in words}
 #: What a dict may hold beside arrays.
-_OTHERS = ("name", "label_map", "scalars", "offset")
+_OTHERS = ("name", "label_map", "scalars", "offset", "source_face")
 _COLUMNS = {
     "x": "x", "y": "y", "z": "z",
     "nx": "nx", "ny": "ny", "nz": "nz", "normal_x": "nx", "normal_y": "ny", "normal_z": "nz",
@@ -53,6 +53,10 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
             others[str(word)] = value
     F, face_of = fan(given.get("F"))
     given["F"] = F
+    if face_of is not None:
+        if others.get("source_face") is not None:
+            raise ArgumentError("source_face: expected triangles beside it, got faces of other numbers of corners")
+        others["source_face"] = face_of
     if "E" in given:
         given["E"] = edges(given["E"], len(given.get("V", ())))
     count = len(given["V"]) if given.get("V") is not None else 0
@@ -60,48 +64,28 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
         found = colors(given["C"], count)
         given["C"] = given["C"] if found is None else found
     named = {name: others.pop(name) for name in _OTHERS if name in others}
-    faces = len(F) if F is not None and face_of is None else -1 if face_of is None else int(face_of[-1]) + 1
+    counts = (count, *_face_counts(F, named.get("source_face")))
     scalars = dict(named.pop("scalars", None) or {})
-    scalars.update({word: _scalar(word, value, count, faces) for word, value in others.items()})
-    if face_of is not None:
-        given, scalars = _spread(given, scalars, count, face_of)
+    scalars.update({word: _scalar(word, value, counts) for word, value in others.items()})
     return make.mesh(scalars=scalars, **given, **named)
 
 
-def _spread(
-    arrays: dict[str, Any], scalars: dict[str, Any], count: int, face_of: NDArray[Any]
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Values per polygon as values per triangle. If there are as many triangles as vertices, they would pass for values of
-    the vertices: the last vertex is repeated then, as the readers of files do."""
-    polygons = int(face_of[-1]) + 1
-
-    def is_spread(values: Any) -> bool:
-        return values is not None and len(values) == polygons != count
-
-    repeats = len(face_of) == count and any(map(is_spread, (arrays.get("L"), *scalars.values())))
-
-    def placed(values: Any) -> Any:
-        return _with_last_again(values) if repeats and values is not None and len(values) == count else values
-
-    def spread(values: Any) -> Any:
-        return np.asarray(as_numpy(values))[face_of] if is_spread(values) else placed(values)
-
-    arrays = arrays | {name: placed(arrays[name]) for name in PER_VERTEX if name in arrays} | {"L": spread(arrays.get("L"))}
-    return arrays, {name: spread(values) for name, values in scalars.items()}
+def _face_counts(F: Any, polygon_of: Any) -> tuple[int, ...]:
+    """How many values may belong to faces: as many as polygons, or as triangles."""
+    if F is None:
+        return ()
+    polygons = () if polygon_of is None else (int(np.max(as_numpy(polygon_of), initial=-1)) + 1,)
+    return (*polygons, len(F))
 
 
-def _with_last_again(values: Any) -> NDArray[Any]:
-    array = np.asarray(as_numpy(values))
-    return np.concatenate([array, array[-1:]])
-
-
-def _scalar(word: str, value: Any, count: int, faces: int) -> NDArray[Any]:
+def _scalar(word: str, value: Any, counts: tuple[int, ...]) -> NDArray[Any]:
+    """`counts`: of vertices, and of faces if there are any."""
     array = np.asarray(as_numpy(value)) if not isinstance(value, str) else np.empty(0, str)
-    if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in (count, faces) and len(array):
+    if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in counts and len(array):
         return array.astype(np.float32) if array.dtype.kind == "b" else array
-    if array.dtype.kind in "biuf" and array.ndim == 1 and count:
-        of_faces = f", or {faces}, one for each face" if faces >= 0 else ""
-        raise ArgumentError(f"scalars '{word}': expected {count} values, one for each vertex{of_faces}, got {len(array)}")
+    if array.dtype.kind in "biuf" and array.ndim == 1 and counts[0]:
+        of_faces = f", or {counts[1]}, one for each face" if len(counts) > 1 else ""
+        raise ArgumentError(f"scalars '{word}': expected {counts[0]} values, one for each vertex{of_faces}, got {len(array)}")
     raise UnknownNameError(
         f"a mesh has no array '{word}'; a dict may hold {', '.join(NAMES)} (points, vertices, faces, normals, colors, ...), "
         f"{', '.join(_OTHERS)}, and scalars: arrays with a number for each vertex or face"
@@ -179,7 +163,8 @@ def _is_whole(block: NDArray[Any]) -> bool:
 
 def of_vertices_and_faces(V: Any, F: Any, make: Maker) -> Mesh:
     """A mesh of (V, F)."""
-    return make.mesh(V=as_numpy(V), F=triangles(F))
+    triangles, face_of = fan(F)
+    return make.mesh(V=as_numpy(V), F=triangles, source_face=face_of)
 
 
 def is_table(what: Any) -> bool:

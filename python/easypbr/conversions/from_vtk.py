@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .._easypbr import Mesh
 from ..errors import ArgumentError
-from .maker import Maker, colors, rows, separate_corners
+from .maker import Maker, colors, fan, rows, separate_corners
 
 #: An array of more values for each point or cell is not taken apart into scalars.
 _MOST_COMPONENTS = 16
@@ -95,11 +95,12 @@ def _output(name: str, what: Any, **options: Any) -> Any:
     return made.GetOutput()
 
 
-def _triangles(what: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    """m x 3 vertex indices of the polygons and strips, and the number of each one's polygon or strip."""
+def _triangles(what: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None]:
+    """m x 3 vertex indices of the polygons and strips, the number of each one's polygon or strip, and that of its polygon,
+    where the triangles of a strip are polygons of their own; None: all are."""
     polys = _cells(what.GetPolys())
     if what.GetNumberOfStrips() == 0 and all(len(cell) == 3 for cell in polys):
-        return np.array(polys, dtype=np.int64).reshape(-1, 3), np.arange(len(polys))
+        return np.array(polys, dtype=np.int64).reshape(-1, 3), np.arange(len(polys)), None
     from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -113,7 +114,8 @@ def _triangles(what: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     alone.GetCellData().AddArray(number)
     made = _output("vtkTriangleFilter", alone)
     F = np.array(_cells(made.GetPolys()), dtype=np.int64).reshape(-1, 3)
-    return F, _numpy(made.GetCellData().GetArray("number"))
+    cells = _numpy(made.GetCellData().GetArray("number"))
+    return F, cells, np.where(cells < len(polys), cells, len(polys) + np.arange(len(F)))
 
 
 def _surface(what: Any) -> Any:
@@ -226,14 +228,14 @@ def _of_polydata(what: Any, active: tuple[str, str] | None, make: Maker) -> Mesh
     verts, lines = _cells(what.GetVerts()), _cells(what.GetLines())
     if what.GetNumberOfCells() == 0:
         return _cloud(what, active, make)
-    F, cell_of_F = _triangles(what)
+    F, cell_of_F, polygon_of_F = _triangles(what)
     on_points = _Fields(what.GetPointData(), "point", active, make)
     on_cells = _Fields(what.GetCellData(), "cell", active, make)
     parts = _Parts(what, points, on_points, on_cells, make)
     first = len(verts)
     children = []
     if len(F):
-        children.append(parts.triangles(F, first + len(lines) + cell_of_F))
+        children.append(parts.triangles(F, first + len(lines) + cell_of_F, polygon_of_F))
     if lines:
         children.append(parts.lines(lines, slice(first, first + len(lines))))
     if verts:
@@ -250,25 +252,29 @@ class _Parts:
         self._N = None if data.GetNormals() is None else rows(_numpy(data.GetNormals()), count)
         self._UV = None if data.GetTCoords() is None else rows(_numpy(data.GetTCoords())[:, :2], count)
 
-    def triangles(self, F: NDArray[Any], cells: NDArray[Any]) -> Mesh:
+    def triangles(self, F: NDArray[Any], cells: NDArray[Any], polygons: NDArray[Any] | None) -> Mesh:
         C = self._on_points.color
         values = self._on_cells.of(cells)
         cell_color = self._on_cells.color[cells] if self._on_cells.color is not None and C is None else None
         # As many faces as vertices would make values of faces those of vertices.
         if cell_color is not None or (values and len(F) == len(self._points)):
-            return self._separate(F, values, cell_color)
+            return self._separate(F, polygons, values, cell_color)
         scalars = self._on_points.scalars | values
-        mesh = self._make.mesh(V=self._points, F=F, N=self._N, UV=self._UV, C=C, scalars=scalars)
+        mesh = self._make.mesh(V=self._points, F=F, source_face=polygons, N=self._N, UV=self._UV, C=C, scalars=scalars)
         return self._finished(mesh)
 
-    def _separate(self, F: NDArray[Any], values: dict[str, NDArray[Any]], cell_color: NDArray[Any] | None) -> Mesh:
-        """Each corner a vertex of its own, with what belongs to its cell."""
-        corners, split, _ = separate_corners(F, np.arange(len(F)))
-        cell = np.repeat(np.arange(len(F)), F.shape[1])
+    def _separate(
+        self, F: NDArray[Any], polygons: NDArray[Any] | None, values: dict[str, NDArray[Any]], cell_color: NDArray[Any] | None
+    ) -> Mesh:
+        """Each corner of a polygon a vertex of its own, with what belongs to its cell."""
+        owner = np.arange(len(F)) if polygons is None else polygons
+        _, first, split = np.unique(owner[:, None] * len(self._points) + F, return_index=True, return_inverse=True)
+        corners, cell = F.ravel()[first], first // F.shape[1]
         C = self._on_points.color
         mesh = self._make.mesh(
             V=self._points[corners],
-            F=split,
+            F=split.reshape(F.shape),
+            source_face=polygons,
             N=None if self._N is None else self._N[corners],
             UV=None if self._UV is None else self._UV[corners],
             C=cell_color[cell] if cell_color is not None else None if C is None else C[corners],
@@ -314,19 +320,29 @@ def is_like_pyvista(what: Any) -> bool:
     return hasattr(what, "points") and hasattr(what, "point_data") and hasattr(what, "n_points")
 
 
+def _polygons(faces: NDArray[Any]) -> Any:
+    """Vertex indices of each polygon, from a list of its number of corners and its corners."""
+    if len(faces) and len(faces) % (faces[0] + 1) == 0:
+        rows_of_faces = faces.reshape(-1, faces[0] + 1)
+        if (rows_of_faces[:, 0] == faces[0]).all():
+            return rows_of_faces[:, 1:]
+    found, at = [], 0
+    while at < len(faces):
+        found.append(faces[at + 1 : at + 1 + faces[at]])
+        at += 1 + int(faces[at])
+    return found or None
+
+
 def of_like_pyvista(what: Any, make: Maker) -> Mesh:
-    # Only surfaces can tell whether they are made of triangles.
+    # Only surfaces have faces.
     if not hasattr(what, "is_all_triangles"):
         what = what.extract_surface()
-    flag = what.is_all_triangles
-    # A property in newer versions, a method in older ones.
-    if len(what.faces) and not (flag() if callable(flag) else flag):
-        what = what.triangulate()
-    faces = np.asarray(what.faces)
+    F, polygon_of_F = fan(_polygons(np.asarray(what.faces)))
     data, count = what.point_data, what.n_points
     return make.mesh(
         V=what.points,
-        F=faces.reshape(-1, 4)[:, 1:] if len(faces) else None,
+        F=F,
+        source_face=polygon_of_F,
         N=rows(data["Normals"] if "Normals" in data else None, count),
         C=rows(data["RGB"] if "RGB" in data else None, count),
         UV=rows(getattr(what, "active_texture_coordinates", None), count),

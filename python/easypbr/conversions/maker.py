@@ -146,14 +146,9 @@ def colors(array: Any, count: int) -> NDArray[Any] | None:
     return np.asarray(_easypbr.unit_colors(found))
 
 
-def triangles(faces: Any) -> NDArray[Any] | None:
-    """m x 3 vertex indices of faces: m x k, or a sequence of polygons of any number of corners, as fans."""
-    triangle_of, _ = fan(faces)
-    return triangle_of
-
-
 def fan(faces: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
-    """Triangles of polygons, and the polygon that each belongs to; None: each is a triangle already."""
+    """m x 3 vertex indices of faces (m x k, or a sequence of polygons of any number of corners), and the polygon that each
+    belongs to; None: each is a triangle already."""
     if faces is None:
         return None, None
     faces = as_numpy(faces)

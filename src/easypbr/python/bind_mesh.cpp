@@ -146,7 +146,17 @@ const std::vector<MeshArray>& mesh_arrays() {
          [](nb::handle o) {
              return prepare<int32_t, 2, &MeshData::E>(o, {"E", 2, 2});
          }},
-        {"L", "int32 labels, one per vertex or per face (per vertex if both numbers are equal).",
+        {"source_face",
+         "m int32 numbers, from 0 on, of the polygon that each triangle is of; empty: each triangle is one. "
+         "Wireframes leave out the edges inside of a polygon, PLY and OBJ files are written with polygons, "
+         "and labels and scalars may be given with one per polygon. Assigning F drops it.",
+         view<int32_t, 1, &MeshData::source_face>,
+         [](nb::handle o) {
+             return prepare<int32_t, 1, &MeshData::source_face>(o, {"source_face", 1, 1});
+         }},
+        {"L",
+         "int32 labels, one per vertex, per face or per polygon (per vertex if the numbers are equal); those "
+         "of polygons are kept as one per face.",
          view<int32_t, 1, &MeshData::L>, prepare_labels},
         {"I", "n float32 intensities.", view<float, 1, &MeshData::I>,
          [](nb::handle o) {
@@ -190,12 +200,14 @@ MeshChange prepare_member(const std::string& name, nb::handle value) {
 
 /// Several arrays at once: they need to fit together only afterwards.
 void assign(Mesh& mesh, const nb::kwargs& values) {
-    std::vector<std::function<void(MeshData&)>> changes;
+    std::vector<MeshChange> changes;
+    // It drops what belongs to the faces before, such as source_face.
+    if (values.contains("F")) changes.push_back(prepare_F(values["F"]));
     if (values.contains("offset"))
         changes.push_back(
             [offset = to_vector3(values["offset"], "offset")](MeshData& data) { data.offset = offset; });
     for (auto [name, value] : values)
-        if (const std::string text = nb::cast<std::string>(name); text != "offset")
+        if (const std::string text = nb::cast<std::string>(name); text != "offset" && text != "F")
             changes.push_back(prepare_member(text, value));
     released([&] {
         mesh.edit([&](MeshData& data) {

@@ -147,8 +147,8 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
                 released([&] { m.add_scalar(name, numbers); });
             },
             nb::arg("name"), nb::arg("values"),
-            "Adds or replaces a named scalar field, one value per vertex or per face (NaN: missing). "
-            "Booleans are 0 and 1.")
+            "Adds or replaces a named scalar field, one value per vertex, per face or per polygon of "
+            "source_face (NaN: missing). Booleans are 0 and 1.")
         .def(
             "remove_scalar",
             [](Mesh& m, const std::string& name) { released([&] { m.remove_scalar(name); }); },

@@ -8,6 +8,7 @@
 #include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/mesh_shared.h"
 #include "easypbr/scene/offset.h"
+#include "easypbr/scene/polygon_values.h"
 
 namespace easypbr {
 namespace {
@@ -61,6 +62,7 @@ void Mesh::edit(const std::function<void(MeshData&)>& change) {
         MeshData next = *before;
         change(next);
         drop_stale_tangents(next, *before);
+        spread_polygon_values(next);
         validate(next, *before);
         if (replace(before, std::make_shared<const MeshData>(std::move(next)))) return;
     }

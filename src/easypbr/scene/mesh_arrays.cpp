@@ -1,5 +1,7 @@
 #include "easypbr/scene/mesh_arrays.h"
 
+#include <numeric>
+
 namespace easypbr {
 
 SplatArrays rows_of(const SplatArrays& splats, std::span<const int32_t> rows) {
@@ -19,6 +21,23 @@ void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows) {
     mesh.I = rows_of(mesh.I, rows);
     mesh.splats = rows_of(mesh.splats, rows);
     for (ScalarArray& scalar : mesh.scalars) scalar.values = rows_of(scalar.values, rows);
+}
+
+void repeat_vertices(std::span<const int32_t> rows, MeshData& mesh) {
+    choose_vertex_rows(mesh, rows);
+    if (mesh.source_vertex.empty())
+        mesh.source_vertex =
+            Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(rows.data(), Eigen::Index(rows.size())));
+    else
+        mesh.source_vertex = rows_of(mesh.source_vertex, rows);
+}
+
+void tell_faces_from_vertices(MeshData& mesh) {
+    const auto count = size_t(mesh.V.rows());
+    if (count == 0 || size_t(mesh.F.rows()) != count) return;
+    std::vector<int32_t> rows(count + 1, int32_t(count) - 1);
+    std::iota(rows.begin(), rows.end() - 1, 0);
+    repeat_vertices(rows, mesh);
 }
 
 void replace_arrays(MeshData& mesh, const MeshData& arrays) {

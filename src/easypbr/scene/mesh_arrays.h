@@ -25,9 +25,21 @@ SplatArrays rows_of(const SplatArrays& splats, std::span<const int32_t> rows);
 /// Throws ArgumentError that names the first row of F with an index that is no vertex's.
 void require_faces(const Array3i& F, Eigen::Index vertices);
 
+/// Throws ArgumentError that names the first number in source_face below 0.
+void require_polygons(const Array1i& source_face);
+/// Throws ArgumentError that names an array with another shape than validate() takes.
+void require_shapes(const MeshData& mesh);
+
 /// Replaces all that a mesh holds for each vertex by the rows that the indices name. Labels and scalars must
 /// be those of vertices.
 void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows);
+
+/// The same, and sets source_vertex, which goes on from the one that there is.
+void repeat_vertices(std::span<const int32_t> rows, MeshData& mesh);
+
+/// Where there are as many faces as vertices, repeats the last vertex, which no face uses then: what has a
+/// value for each face would pass for values of the vertices. Labels and scalars must be those of vertices.
+void tell_faces_from_vertices(MeshData& mesh);
 
 /// Gives a mesh the arrays, parts and sources of another; its name, materials, style, pose and children stay.
 void replace_arrays(MeshData& mesh, const MeshData& arrays);

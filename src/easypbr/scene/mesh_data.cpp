@@ -14,6 +14,7 @@
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh_arrays.h"
+#include "easypbr/scene/polygon_values.h"
 
 namespace easypbr {
 namespace {
@@ -50,10 +51,11 @@ template <class Array>
 void require_rows_of_either(const std::string& name, const Array& array, const MeshData& data) {
     const Eigen::Index n = data.V.rows(), m = data.F.rows();
     if (array.empty() || array.rows() == n || array.rows() == m) return;
-    throw ArgumentError(
-        fmt::format("mesh array {}: expected {} rows, one per vertex, or {}, one per face, or none; got {} "
-                    "x {}",
-                    name, n, m, array.rows(), array.cols()));
+    const Eigen::Index polygons = polygon_count(data);
+    throw ArgumentError(fmt::format(
+        "mesh array {}: expected {} rows, one per vertex, or {}, one per face,{} or none; got {} x {}", name,
+        n, m, polygons > 0 ? fmt::format(" or {}, one per polygon,", polygons) : "", array.rows(),
+        array.cols()));
 }
 
 void require_scalars(const MeshData& data) {
@@ -90,6 +92,8 @@ void require_splat_shapes(const SplatArrays& splats, Eigen::Index n) {
                         cols));
 }
 
+}  // namespace
+
 void require_shapes(const MeshData& data) {
     const Eigen::Index n = data.V.rows(), m = data.F.rows();
     require_rows("N", data.N, n, "vertex");
@@ -108,6 +112,8 @@ void require_shapes(const MeshData& data) {
         throw ArgumentError(fmt::format("mesh array C: expected {} x 3 or {} x 4, got {} x {}", n, n,
                                         data.C.rows(), data.C.cols()));
 }
+
+namespace {
 
 void require_splats(const SplatArrays& splats) {
     const auto require = [](const char* what, Eigen::Index rows, auto&& is_bad) {
@@ -193,6 +199,15 @@ void require_faces(const Array3i& F, Eigen::Index vertices) {
     require_indices("F", F, vertices);
 }
 
+void require_polygons(const Array1i& source_face) {
+    const size_t row =
+        first_bad_row(source_face.rows(), [&](size_t i) { return source_face(Eigen::Index(i)) < 0; });
+    if (row == no_row) return;
+    throw ArgumentError(
+        fmt::format("mesh array source_face: expected numbers of polygons from 0 on, got {} in row {} of {}",
+                    source_face(Eigen::Index(row)), row, source_face.rows()));
+}
+
 void validate(const MeshData& data) {
     validate(data, MeshData{});
 }
@@ -206,6 +221,7 @@ void validate(const MeshData& data, const MeshData& valid) {
     const bool same_count = data.V.rows() == valid.V.rows();
     if (!same_V) require_finite_positions(data.V);
     if (!same_count || !same_array(data.F, valid.F)) require_faces(data.F, data.V.rows());
+    if (!same_array(data.source_face, valid.source_face)) require_polygons(data.source_face);
     if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
     if (!same_array(data.splats.scales, valid.splats.scales) ||
         !same_array(data.splats.rotations, valid.splats.rotations) ||

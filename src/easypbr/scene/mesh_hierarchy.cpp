@@ -5,6 +5,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/mesh_shared.h"
+#include "easypbr/scene/polygon_values.h"
 
 namespace easypbr {
 namespace {
@@ -28,6 +29,7 @@ bool contains(const std::vector<Mesh>& meshes, const Mesh& mesh) {
 }  // namespace
 
 Mesh::Mesh(MeshData data) : shared_(std::make_shared<Shared>()) {
+    spread_polygon_values(data);
     validate(data);
     shared_->data = std::make_shared<const MeshData>(std::move(data));
     if (shared_->data->children.empty()) return;

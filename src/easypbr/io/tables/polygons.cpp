@@ -183,15 +183,6 @@ void permute_rows(A& array, const std::vector<uint32_t>& order) {
     array = std::move(permuted);
 }
 
-void repeat_vertices(const std::vector<int32_t>& rows, MeshData& mesh) {
-    choose_vertex_rows(mesh, rows);
-    if (mesh.source_vertex.empty())
-        mesh.source_vertex =
-            Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(rows.data(), Eigen::Index(rows.size())));
-    else
-        mesh.source_vertex = rows_of(mesh.source_vertex, rows);
-}
-
 constexpr float color_steps = 65535;
 
 /// Four codes of 16 bits, of which those of bytes are exact; alpha is 1 where there is none.
@@ -230,14 +221,6 @@ CornerSplit color_vertices_by_faces(const ArrayXf::Dense& C, Polygons& polygons,
 void gather_vertices(const CornerSplit& split, MeshData& mesh) {
     if (split.source_vertex.size() == size_t(mesh.V.rows())) return;
     repeat_vertices(split.source_vertex, mesh);
-}
-
-void tell_faces_from_vertices(MeshData& mesh) {
-    const auto count = size_t(mesh.V.rows());
-    if (count == 0 || size_t(mesh.F.rows()) != count) return;
-    std::vector<int32_t> rows(count + 1, int32_t(count) - 1);
-    std::iota(rows.begin(), rows.end() - 1, 0);
-    repeat_vertices(rows, mesh);
 }
 
 void assign_materials(std::span<const int32_t> material_of_polygon, MeshData& mesh) {

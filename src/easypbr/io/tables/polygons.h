@@ -64,10 +64,6 @@ void gather_vertices(const CornerSplit& split, MeshData& mesh);
 /// the mesh's C. `C` has a row of three or four parts in 0 .. 1 for each polygon.
 CornerSplit color_vertices_by_faces(const ArrayXf::Dense& C, Polygons& polygons, MeshData& mesh);
 
-/// Where there are as many faces as vertices, repeats the last vertex, which no face uses then: what has a
-/// value for each face would pass for values of the vertices. Labels and scalars must be those of vertices.
-void tell_faces_from_vertices(MeshData& mesh);
-
 /// Sorts the triangles by material (stable) and fills `parts`: one for each material that is used.
 /// `material_of_polygon` has an entry for each polygon of the file.
 void assign_materials(std::span<const int32_t> material_of_polygon, MeshData& mesh);

@@ -10,6 +10,7 @@
 #include "easypbr/io/mesh/npy/npy_points.h"
 #include "easypbr/io/tables/polygons.h"
 #include "easypbr/io/tables/vertex_arrays.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::io {
 namespace {
