@@ -38,14 +38,6 @@ void write_fan(const int32_t* polygon, size_t size, size_t start, int32_t* out) 
     }
 }
 
-/// Quads are cut along a diagonal, larger polygons into a fan where that is good, else by their ears.
-void write_triangles(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out) {
-    if (size > 4 && size <= most_clipped_corners && !is_fan_good(V, polygon, size))
-        EarClipper(V, polygon, size).write(out);
-    else
-        write_fan(polygon, size, fan_start(V, polygon, size), out);
-}
-
 size_t triangles_of(size_t corners) {
     return corners < 3 ? 0 : corners - 2;
 }
@@ -71,6 +63,13 @@ Array3i view_as_triangles(Polygons&& polygons) {
 }
 
 }  // namespace
+
+void cut_polygon(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out) {
+    if (size > 4 && size <= most_clipped_corners && !is_fan_good(V, polygon, size))
+        EarClipper(V, polygon, size).write(out);
+    else
+        write_fan(polygon, size, fan_start(V, polygon, size), out);
+}
 
 void check_indices(const Source& source, std::span<const int32_t> indices, size_t count,
                    std::string_view what, int base) {
@@ -115,7 +114,7 @@ void triangulate(Polygons&& polygons, MeshData& mesh) {
         const size_t size = polygons.size_of(i);
         if (size < 3) return;
         const int32_t* polygon = polygons.values.data() + polygons.begin_of(i);
-        write_triangles(mesh.V, polygon, size, F.data() + size_t(first[i]) * 3);
+        cut_polygon(mesh.V, polygon, size, F.data() + size_t(first[i]) * 3);
         std::fill(source_face.data() + first[i], source_face.data() + first[i + 1], int32_t(i));
     });
     mesh.F = std::move(F);

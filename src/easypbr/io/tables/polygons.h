@@ -34,6 +34,9 @@ void check_indices(const Source& source, std::span<const int32_t> indices, size_
 /// Throws FormatError, naming the first one, unless all positions are finite.
 void check_positions(const Source& source, const Array3f::Dense& V);
 
+/// Writes the size - 2 triangles of a polygon of at least three corners, as triangulate() cuts it.
+void cut_polygon(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out);
+
 /// Fills F and source_face of a mesh whose V is set. A polygon of n corners gives n - 2 triangles: a fan
 /// where all of its triangles lie inside, else a concave quad is cut along its other diagonal where only that
 /// one lies inside, and the ears of larger polygons are cut off, up to most_clipped_corners. Polygons with

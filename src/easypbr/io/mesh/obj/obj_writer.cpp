@@ -9,6 +9,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/tables/face_polygons.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -66,13 +67,16 @@ void append_vertices(const MeshData& mesh, std::string& out) {
     });
 }
 
-void append_faces(const MeshData& mesh, const MeshPart& part, std::string& out) {
+void append_faces(const MeshData& mesh, const FacePolygons& polygons, const MeshPart& part,
+                  std::string& out) {
     const bool has_uv = !mesh.UV.empty(), flat = is_flat(mesh), has_normal = flat || !mesh.N.empty();
-    append_lines(size_t(part.face_count), out, [&](Eigen::Index row, std::string& text) {
+    const size_t first = polygons.polygons_before(part.first_face),
+                 end = polygons.polygons_before(part.first_face + part.face_count);
+    append_lines(end - first, out, [&](Eigen::Index row, std::string& text) {
+        const size_t polygon = first + size_t(row);
         text += "f";
-        for (Eigen::Index k = 0; k < 3; ++k) {
-            const int32_t v = mesh.F(part.first_face + row, k) + 1,
-                          n = flat ? int32_t(part.first_face + row) + 1 : v;
+        for (const int32_t corner : polygons.corners(polygon)) {
+            const int32_t v = corner + 1, n = flat ? int32_t(polygons.face(polygon)) + 1 : v;
             const auto to = std::back_inserter(text);
             if (has_uv && has_normal) fmt::format_to(to, " {0}/{0}/{1}", v, n);
             if (has_uv && !has_normal) fmt::format_to(to, " {0}/{0}", v);
@@ -181,9 +185,10 @@ ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::
     append_vertices(mesh, text.obj);
     std::vector<MeshPart> parts = mesh.parts;
     if (parts.empty()) parts.push_back({{}, 0, int(mesh.F.rows()), 0});
+    const FacePolygons polygons = is_flat(mesh) ? FacePolygons(mesh.F) : FacePolygons(mesh);
     for (const MeshPart& part : parts) {
         if (!names.empty()) text.obj += fmt::format("usemtl {}\n", names[size_t(part.material)]);
-        append_faces(mesh, part, text.obj);
+        append_faces(mesh, polygons, part, text.obj);
     }
     append_lines(size_t(mesh.E.rows()), text.obj, [&](Eigen::Index row, std::string& out) {
         fmt::format_to(std::back_inserter(out), "l {} {}\n", mesh.E(row, 0) + 1, mesh.E(row, 1) + 1);

@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <span>
 
+#include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/tables/face_polygons.h"
 #include "easypbr/io/tables/splat_columns.h"
 #include "easypbr/io/tables/vertex_rows.h"
 
 namespace easypbr::io {
 namespace {
+
+constexpr size_t polygon_row_grain = 1 << 14;
 
 std::string_view ply_type(ScalarType type) {
     switch (type) {
@@ -25,16 +30,30 @@ std::string_view ply_type(ScalarType type) {
     }
 }
 
-/// The three corners of a triangle as a list, whose length stands before it.
-RowPart corner_part(const Array3i& F) {
-    constexpr size_t size = 13;
-    return {{"vertex_indices"},
-            ScalarType::int32,
-            [F](Eigen::Index row, char* out) {
-                *out = 3;
-                std::memcpy(out + 1, F.data() + row * 3, size - 1);
-            },
-            size};
+/// The type of a polygon's number of corners.
+ScalarType count_type(const FacePolygons& polygons) {
+    return polygons.most_corners() > 255 ? ScalarType::int32 : ScalarType::uint8;
+}
+
+/// For each polygon its number of corners, the corners, and what its triangles have beside them.
+void append_polygons(const FacePolygons& polygons, const std::vector<RowPart>& values, std::string& out) {
+    const size_t count_size = size_of(count_type(polygons));
+    size_t stride = count_size;
+    for (const RowPart& part : values) stride += part.size;
+    const size_t begin = out.size(), corner_size = sizeof(int32_t);
+    out.resize(begin + polygons.size() * stride + polygons.first_corner(polygons.size()) * corner_size);
+    parallel_for(polygons.size(), polygon_row_grain, [&](size_t i) {
+        char* to = out.data() + begin + i * stride + polygons.first_corner(i) * corner_size;
+        const std::span<const int32_t> corners = polygons.corners(i);
+        const auto count = int32_t(corners.size());
+        std::memcpy(to, &count, count_size);
+        std::memcpy(to + count_size, corners.data(), corners.size_bytes());
+        to += count_size + corners.size_bytes();
+        for (const RowPart& part : values) {
+            part.write(polygons.face(i), to);
+            to += part.size;
+        }
+    });
 }
 
 void append_header(const std::vector<RowPart>& parts, std::string& out) {
@@ -49,8 +68,7 @@ std::string encode_ply(const MeshData& mesh, const fs::path& folder) {
     std::vector<RowPart> vertices = vertex_row_parts(mesh);
     std::ranges::move(splat_row_parts(mesh.splats), std::back_inserter(vertices));
     const std::vector<RowPart> face_values = face_row_parts(mesh);
-    std::vector<RowPart> faces{corner_part(mesh.F)};
-    faces.insert(faces.end(), face_values.begin(), face_values.end());
+    const FacePolygons polygons(mesh);
     std::string out = "ply\nformat binary_little_endian 1.0\n";
     if (mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty())
         out += fmt::format("comment TextureFile {}\n",
@@ -62,14 +80,15 @@ std::string encode_ply(const MeshData& mesh, const fs::path& folder) {
     // Readers of splats know nothing else.
     const bool with_faces = mesh.splats.empty() || !mesh.F.empty();
     if (with_faces) {
-        out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.F.rows());
+        out += fmt::format("element face {}\nproperty list {} int vertex_indices\n", polygons.size(),
+                           ply_type(count_type(polygons)));
         append_header(face_values, out);
     }
     if (!mesh.E.empty())
         out += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", mesh.E.rows());
     out += "end_header\n";
     append_rows(vertices, size_t(mesh.V.rows()), out);
-    append_rows(faces, size_t(mesh.F.rows()), out);
+    append_polygons(polygons, face_values, out);
     out.append(reinterpret_cast<const char*>(mesh.E.data()), size_t(mesh.E.size()) * sizeof(int32_t));
     return out;
 }
