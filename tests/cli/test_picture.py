@@ -180,6 +180,21 @@ def test_crease_angle_decides_on_stl_edges(layers, tmp_path):
     assert sharp["B"][24, 32] == pytest.approx(1, abs=1e-4) and soft["B"][24, 32] < 0.99
 
 
+def test_crease_angle_decides_on_edges_of_files_without_normals(layers, easypbr, tmp_path):
+    # Two triangles at a right angle with a common edge.
+    (tmp_path / "edge.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 -1\nf 1 2 3\nf 1 3 4\n")
+    view = ("--camera-position", "0.3,0.3,5", "--camera-target", "0.3,0.3,0", "--ortho", "1")
+    (sharp,), (soft,), (plain,) = (
+        layers("normal_world", "edge.obj", *crease, *view) for crease in (("--crease", "30"), ("--crease", "180"), ())
+    )
+    # The picture's middle is on the first triangle, whose own normal is +z.
+    assert sharp["B"][24, 32] == pytest.approx(1, abs=1e-4)
+    assert soft["B"][24, 32] < 0.99 and (plain["B"] == soft["B"]).all()
+    for crease, vertices in (("30", 6), ("100", 4)):
+        easypbr("convert", "edge.obj", "edge.ply", "--crease", crease)
+        assert b"element vertex %d\n" % vertices in (tmp_path / "edge.ply").read_bytes()
+
+
 def test_bit_depth_16_writes_16_bits(picture, sphere):
     pixels = picture(sphere, "--bit-depth", "16", "--background", "#204060")
     assert pixels.dtype.itemsize == 2 and pixels[0, 0].tolist() == [0x20 * 257, 0x40 * 257, 0x60 * 257, 65535]

@@ -201,11 +201,15 @@ struct BasicAnnotationSettings {
 };
 using AnnotationSettings = BasicAnnotationSettings<Auto>;
 
-/// Loading of files by the command line and the window.
-struct LoadSettings {
-    float crease_deg = 30;  ///< STL: edges between faces at a larger angle stay sharp, degrees, 0 to 180
-    std::string variant;    ///< glTF: name of the material variant; empty: the file's own materials
+/// Loading of files by the command line and the window, and normals of what has none.
+template <template <class> class MaybeAuto>
+struct BasicLoadSettings {
+    /// Edges between faces at a larger angle are sharp, degrees, 0 to 180; automatic: 30 for STL files, 180
+    /// for all else.
+    MaybeAuto<float> crease_deg{};
+    std::string variant;  ///< glTF: name of the material variant; empty: the file's own materials
 };
+using LoadSettings = BasicLoadSettings<Auto>;
 
 /// Limits on what files may ask for.
 struct LimitSettings {
@@ -235,7 +239,7 @@ struct BasicSettings {
     SplatSettings splats;
     ClipSettings clip;
     BasicAnnotationSettings<MaybeAuto> annotation;
-    LoadSettings load;
+    BasicLoadSettings<MaybeAuto> load;
     LimitSettings limits;
 };
 

@@ -67,7 +67,8 @@ void add_parts(const fs::path& path, std::set<fs::path>& files) {
 }  // namespace
 
 io::LoadOptions load_options(const Settings& settings, const std::string& format) {
-    return {.crease_angle_deg = settings.load.crease_deg,
+    const Auto<float>& crease = settings.load.crease_deg;
+    return {.crease_angle_deg = crease.is_pinned() ? crease.value() : std::nullopt,
             .memory_gb = settings.limits.memory,
             .format = format,
             .variant = settings.load.variant};

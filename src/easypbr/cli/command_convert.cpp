@@ -6,6 +6,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/settings.h"
 
@@ -22,8 +23,10 @@ void declare_convert(CLI::App& command, ConvertOptions& options) {
     declare_format(command, options.format);
     command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
     command
-        .add_option("--crease", options.crease,
-                    "Crease angle of STL files: edges between faces at a larger angle stay sharp")
+        .add_option(
+            "--crease", options.crease,
+            "Crease angle of a mesh without normals: edges between faces at a larger angle are sharp; "
+            "30 for STL files without it")
         ->option_text("DEG");
     command
         .add_option("--memory", options.memory,
@@ -55,8 +58,9 @@ void check_convert(const ConvertOptions& options) {
 int run_convert(const ConvertOptions& options) {
     check_writable(options.out);
     if (!is_image_file(options.in)) {
-        const Mesh mesh =
-            load_input(options.in, app::load_options(settings_of(options), options.format)).mesh;
+        const io::LoadOptions load = app::load_options(settings_of(options), options.format);
+        const Mesh mesh = load_input(options.in, load).mesh;
+        if (load.crease_angle_deg) split_creases(mesh, *load.crease_angle_deg);
         Phases phases(options.steps.empty() ? 1 : int(options.steps.size()) + 2);
         const Mesh changed = apply_mesh_steps(mesh, options.steps, phases);
         phases.begin("writing " + options.out);

@@ -488,10 +488,12 @@ void add_annotation(Table& table) {
 }
 
 void add_loading(Table& table) {
-    table.push_back(make("load.crease_deg", EASYPBR_AT(load.crease_deg),
-                         "Crease angle of STL files loaded by the command line and the window: edges between "
-                         "faces at a larger angle stay sharp.",
-                         "degrees", {0, 180}));
+    table.push_back(
+        make("load.crease_deg", EASYPBR_AT(load.crease_deg),
+             "Crease angle of meshes without normals that are not drawn flat: edges between faces at "
+             "a larger angle are sharp; automatic: 30 for STL files that the command line or the "
+             "window loads, else none is.",
+             "degrees", {0, 180}));
     table.push_back(make("load.variant", EASYPBR_AT(load.variant),
                          "Material variant of glTF files loaded by the command line and the window, by name; "
                          "empty: the file's own materials."));

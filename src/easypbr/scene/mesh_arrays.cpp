@@ -1,6 +1,9 @@
 #include "easypbr/scene/mesh_arrays.h"
 
+#include <algorithm>
 #include <numeric>
+#include <type_traits>
+#include <utility>
 
 namespace easypbr {
 
@@ -38,6 +41,25 @@ void tell_faces_from_vertices(MeshData& mesh) {
     std::vector<int32_t> rows(count + 1, int32_t(count) - 1);
     std::iota(rows.begin(), rows.end() - 1, 0);
     repeat_vertices(rows, mesh);
+}
+
+FaceValues::FaceValues(MeshData& mesh) {
+    const auto take = [&](auto& values) {
+        std::remove_cvref_t<decltype(values)> taken;
+        if (!values.empty() && element_of(mesh, values.rows()) == PerElement::face) std::swap(taken, values);
+        return taken;
+    };
+    L = take(mesh.L);
+    for (ScalarArray& scalar : mesh.scalars) scalars.push_back(take(scalar.values));
+}
+
+void FaceValues::put_back(MeshData& mesh) const {
+    const auto is_given = [](const Array1f& values) { return !values.empty(); };
+    if (L.empty() && std::ranges::none_of(scalars, is_given)) return;
+    tell_faces_from_vertices(mesh);
+    if (!L.empty()) mesh.L = L;
+    for (size_t i = 0; i < scalars.size(); ++i)
+        if (is_given(scalars[i])) mesh.scalars[i].values = scalars[i];
 }
 
 void replace_arrays(MeshData& mesh, const MeshData& arrays) {

@@ -41,6 +41,18 @@ void repeat_vertices(std::span<const int32_t> rows, MeshData& mesh);
 /// value for each face would pass for values of the vertices. Labels and scalars must be those of vertices.
 void tell_faces_from_vertices(MeshData& mesh);
 
+/// Labels and scalars of faces, out of a mesh while its vertices change.
+struct FaceValues {
+    Array1i L;
+    std::vector<Array1f> scalars;  ///< one for each of the mesh; empty for those of vertices
+
+    FaceValues() = default;
+    /// Takes them out of the mesh.
+    explicit FaceValues(MeshData& mesh);
+    /// Puts them back; where they would pass for values of vertices, tell_faces_from_vertices() comes before.
+    void put_back(MeshData& mesh) const;
+};
+
 /// Gives a mesh the arrays, parts and sources of another; its name, materials, style, pose and children stay.
 void replace_arrays(MeshData& mesh, const MeshData& arrays);
 

@@ -35,15 +35,12 @@ void spread_polygon_values(MeshData& mesh) {
     if (all_fit || mesh.source_face.rows() != mesh.F.rows()) return;
     require_polygons(mesh.source_face);
     const Eigen::Index polygons = polygon_count(mesh);
-    const Array1i labels = taken_for_triangles(mesh.L, mesh, polygons);
-    std::vector<Array1f> scalars;
+    FaceValues values;
+    values.L = taken_for_triangles(mesh.L, mesh, polygons);
     for (ScalarArray& scalar : mesh.scalars)
-        scalars.push_back(taken_for_triangles(scalar.values, mesh, polygons));
+        values.scalars.push_back(taken_for_triangles(scalar.values, mesh, polygons));
     require_shapes(mesh);
-    tell_faces_from_vertices(mesh);
-    if (!labels.empty()) mesh.L = labels;
-    for (size_t i = 0; i < scalars.size(); ++i)
-        if (!scalars[i].empty()) mesh.scalars[i].values = scalars[i];
+    values.put_back(mesh);
 }
 
 }  // namespace easypbr

@@ -188,6 +188,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     resolve_exposure(content, settings, resolved);
     detail::fill(settings.annotation.legend, false);
     detail::fill(settings.annotation.colorbar, false);
+    detail::fill(settings.load.crease_deg, 180.0f);
     const detail::EffectContext context{content, size,     samples.value_or(settings.image.samples),
                                         given,   settings, resolved};
 #define EASYPBR_INFER(name, Type) detail::infer(settings.name, context);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,8 +26,8 @@ struct LoadedScene {
 };
 
 struct LoadOptions {
-    float crease_angle_deg =
-        30;                ///< STL: welded corners whose faces meet at a larger angle keep separate normals
+    /// STL: welded corners whose faces meet at a larger angle keep separate normals; none: 30.
+    std::optional<float> crease_angle_deg = {};
     double memory_gb = 0;  ///< most that the arrays and images of the file may take; 0: three quarters of
                            ///< what the machine has left
     std::string format = {};   ///< extension of the format that a file is in; empty: its own extension

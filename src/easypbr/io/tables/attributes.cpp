@@ -40,9 +40,4 @@ void tidy_uv(Array2f::Dense& UV) {
     });
 }
 
-void follow_split(const CornerSplit& split, std::span<int32_t> indices) {
-    const auto begin = split.source_vertex.begin(), end = split.source_vertex.end();
-    for (int32_t& index : indices) index = int32_t(std::lower_bound(begin, end, index) - begin);
-}
-
 }  // namespace easypbr::io

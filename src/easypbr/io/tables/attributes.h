@@ -16,7 +16,4 @@ void tidy_colors(ArrayXf::Dense& C);
 /// Texture coordinates that are not finite become 0.
 void tidy_uv(Array2f::Dense& UV);
 
-/// Lets indices point to the first vertex that each file's vertex became.
-void follow_split(const CornerSplit& split, std::span<int32_t> indices);
-
 }  // namespace easypbr::io

@@ -138,40 +138,6 @@ std::vector<int32_t> triangles_of_strips(const Polygons& strips) {
     return triangles;
 }
 
-CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const uint64_t> keys,
-                          size_t vertex_count) {
-    std::vector<uint32_t> first(vertex_count + 1, 0);
-    for (const int32_t v : corner_vertices) ++first[size_t(v) + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-
-    std::vector<uint64_t> sorted(corner_vertices.size());
-    std::vector<uint32_t> next(first.begin(), first.end() - 1);
-    for (size_t c = 0; c < corner_vertices.size(); ++c) sorted[next[size_t(corner_vertices[c])]++] = keys[c];
-
-    std::vector<uint32_t> different(vertex_count + 1, 0);
-    parallel_for(vertex_count, polygon_grain / 4, [&](size_t v) {
-        const auto begin = sorted.begin() + first[v], end = sorted.begin() + first[v + 1];
-        std::sort(begin, end);
-        different[v + 1] = std::max<uint32_t>(1, uint32_t(std::unique(begin, end) - begin));
-    });
-    std::partial_sum(different.begin(), different.end(), different.begin());
-
-    CornerSplit split{std::vector<int32_t>(different.back()),
-                      std::vector<uint64_t>(different.back(), no_key)};
-    parallel_for(vertex_count, polygon_grain / 4, [&](size_t v) {
-        const size_t base = different[v], count = different[v + 1] - base;
-        std::fill_n(split.source_vertex.begin() + ptrdiff_t(base), count, int32_t(v));
-        if (first[v] != first[v + 1])
-            std::copy_n(sorted.begin() + first[v], count, split.key.begin() + ptrdiff_t(base));
-    });
-    parallel_for(corner_vertices.size(), polygon_grain, [&](size_t c) {
-        const size_t v = size_t(corner_vertices[c]);
-        const auto begin = split.key.begin() + different[v], end = split.key.begin() + different[v + 1];
-        corner_vertices[c] = int32_t(different[v] + (std::lower_bound(begin, end, keys[c]) - begin));
-    });
-    return split;
-}
-
 namespace {
 
 template <class A>
@@ -215,11 +181,6 @@ CornerSplit color_vertices_by_faces(const ArrayXf::Dense& C, Polygons& polygons,
                  [&](size_t i) { of_vertices.row(Eigen::Index(i)) = color_of(split.key[i]).head(C.cols()); });
     mesh.C = std::move(of_vertices);
     return split;
-}
-
-void gather_vertices(const CornerSplit& split, MeshData& mesh) {
-    if (split.source_vertex.size() == size_t(mesh.V.rows())) return;
-    repeat_vertices(split.source_vertex, mesh);
 }
 
 void assign_materials(std::span<const int32_t> material_of_polygon, MeshData& mesh) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/io/source/source.h"
+#include "easypbr/scene/corner_split.h"
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
@@ -46,22 +47,6 @@ void triangulate(Polygons&& polygons, MeshData& mesh);
 /// Triangles of strips with indices in the order of the winding; -1 starts a new strip, degenerate triangles
 /// are left out.
 std::vector<int32_t> triangles_of_strips(const Polygons& strips);
-
-/// One vertex per different pair of vertex and key.
-struct CornerSplit {
-    std::vector<int32_t> source_vertex;  ///< ascending
-    std::vector<uint64_t> key;           ///< `no_key` for a vertex that no corner uses
-};
-inline constexpr uint64_t no_key = ~uint64_t(0);
-
-/// Makes one vertex of each different (vertex, key) of the corners and lets `corner_vertices` point to them.
-/// The new vertices are in the order of their source, then of their key.
-CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const uint64_t> keys,
-                          size_t vertex_count);
-
-/// Repeats the rows of all arrays of the vertices by the sources of the new vertices, and sets source_vertex,
-/// which goes on from the one that there is.
-void gather_vertices(const CornerSplit& split, MeshData& mesh);
 
 /// Makes one vertex of each different pair of a vertex and a colour of the polygons that use it, and fills
 /// the mesh's C. `C` has a row of three or four parts in 0 .. 1 for each polygon.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/cut.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/material_table.h"
@@ -251,7 +252,7 @@ DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const InferredSet
 
 void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredSettings& settings) {
     SceneSnapshot::Object& object = drawable.scene.objects[index];
-    const SceneSnapshot::Object own = object;
+    SceneSnapshot::Object own = object;
     object.half_voxel = object.point_radius = 0;  // kinds of primitives tell how far they reach
     const DrawStyle style = resolve_style(*own.mesh, settings.style);
     const auto plan_for = [&](DrawMode mode) {
@@ -262,11 +263,14 @@ void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredS
     if (!style.visible || own.mesh->V.empty()) return;
     const std::vector<Eigen::Vector4d> planes = planes_of(settings.clip, own.T_world_mesh);
     const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
+    ElementSources split;
+    if (style.mode == DrawMode::mesh && !style.flat)
+        own.mesh = creased(own.mesh, settings.load.crease_deg, split);
     const auto dressed = [&](const ColorPlan& by, ElementSources& sources) {
         const auto whole = colored(own, by, sources);
         return planes.empty() ? whole : clipped(whole, planes, by_vertex, by.by == ColorBy::label, sources);
     };
-    ElementSources& sources = drawable.sources[index];
+    ElementSources& sources = drawable.sources[index] = split;
     object.mesh = dressed(plan, sources);
     if (style.mode == DrawMode::voxels && !object.mesh->V.empty()) {
         const double spacing = style.voxel_size ? 0 : spacings_.get(own.mesh->V);
@@ -278,7 +282,7 @@ void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredS
     PointsOnTop& points = drawable.points[index];
     points.meaning = meaning_of(of_points);
     if (of_points.key == plan.key) return;
-    ElementSources of_vertices;
+    ElementSources of_vertices = split;
     points.mesh = dressed(of_points, of_vertices);
     sources.points = of_vertices.points;
 }
@@ -291,6 +295,18 @@ std::shared_ptr<const MeshData> DrawableCache::colored(const SceneSnapshot::Obje
         MeshData made = with_colors(own, plan, entry.table);
         if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
         return made;
+    });
+}
+
+std::shared_ptr<const MeshData> DrawableCache::creased(const std::shared_ptr<const MeshData>& whole,
+                                                       float angle_deg, ElementSources& sources) {
+    if (angle_deg >= 180 || whole->F.empty() || !whole->N.empty()) return whole;
+    return get(fmt::format("crease {} {}", angle_deg, arrays_of(*whole)), *whole, sources, [&](Entry& entry) {
+        MeshData mesh = *whole;
+        const std::vector<int32_t> rows = split_creases(mesh, angle_deg);
+        entry.sources.points =
+            Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(rows.data(), Eigen::Index(rows.size())));
+        return mesh;
     });
 }
 

@@ -81,6 +81,9 @@ class DrawableCache {
     /// The object's data, coloured by a plan.
     std::shared_ptr<const MeshData> colored(const SceneSnapshot::Object& object, const ColorPlan& plan,
                                             ElementSources& sources);
+    /// Data without normals with those that a crease angle gives.
+    std::shared_ptr<const MeshData> creased(const std::shared_ptr<const MeshData>& whole, float angle_deg,
+                                            ElementSources& sources);
     /// What clip planes leave of data that a plan has coloured.
     std::shared_ptr<const MeshData> clipped(const std::shared_ptr<const MeshData>& whole,
                                             const std::vector<Eigen::Vector4d>& planes, bool by_vertex,

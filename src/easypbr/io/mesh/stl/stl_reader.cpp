@@ -10,11 +10,11 @@
 
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/mesh/crease.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/polygons.h"
+#include "easypbr/scene/crease.h"
 
 namespace easypbr::io {
 namespace {
@@ -143,6 +143,13 @@ void weld(Corners&& corners, MeshData& mesh) {
 
 }  // namespace
 
+namespace {
+
+/// Without a value of the user.
+constexpr float stl_crease_deg = 30;
+
+}  // namespace
+
 MeshData read_stl(const Source& source, const LoadOptions& options) {
     if (source.bytes.empty()) fail(source, "the file is empty");
     Corners corners = is_text_stl(source) ? read_text(source) : read_binary(source);
@@ -150,7 +157,7 @@ MeshData read_stl(const Source& source, const LoadOptions& options) {
     MeshData mesh;
     weld(std::move(corners), mesh);
     check_positions(source, mesh.V);
-    split_creases(mesh, options.crease_angle_deg);
+    split_creases(mesh, options.crease_angle_deg.value_or(stl_crease_deg));
     return mesh;
 }
 

@@ -1,4 +1,4 @@
-#include "easypbr/io/mesh/crease.h"
+#include "easypbr/scene/crease.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,12 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/tables/polygons.h"
+#include "easypbr/scene/corner_split.h"
+#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
-namespace easypbr::io {
+namespace easypbr {
 namespace {
 
 constexpr size_t crease_grain = 1 << 13;
@@ -83,18 +85,33 @@ std::vector<char> faces_with_area(const Array3f& V, const Array3i& F) {
     return has_area;
 }
 
-std::vector<uint64_t> group_corners(const MeshData& mesh, float crease_angle_deg) {
+/// The faces of vertices that were split from one, which are numbered by source_vertex.
+struct UnitedFaces {
+    Array3i F;
+    size_t vertices;
+
+    explicit UnitedFaces(const MeshData& mesh) : F(mesh.F), vertices(size_t(mesh.V.rows())) {
+        if (mesh.source_vertex.empty()) return;
+        vertices = size_t(mesh.source_vertex.maxCoeff()) + 1;
+        Array3i::Dense united(mesh.F.rows(), 3);
+        for (Eigen::Index i = 0; i < united.size(); ++i)
+            united.data()[i] = mesh.source_vertex(mesh.F.data()[i]);
+        F = std::move(united);
+    }
+};
+
+/// For each corner the place, among those at its vertex, of the first one that it shares a normal with.
+std::vector<uint64_t> group_corners(const MeshData& mesh, const UnitedFaces& united, float crease_angle_deg) {
     // Rounding must not part faces that meet at just the given angle, above all coplanar ones at angle 0.
     constexpr double rounding = 1e-6;
     const float least_cosine =
         float(std::cos(radians(std::clamp(crease_angle_deg, 0.0f, 180.0f))) - rounding);
     const Array3f normals = face_normals(mesh.V, mesh.F);
     const std::vector<char> has_area = faces_with_area(mesh.V, mesh.F);
-    const size_t vertices = size_t(mesh.V.rows());
-    const VertexCorners ring(mesh.F, vertices);
-    std::vector<uint64_t> keys(size_t(mesh.F.size()));
-    parallel_chunks(vertices, crease_grain, [&](size_t begin, size_t end) {
-        CornerGroups groups(mesh.F, normals, has_area, least_cosine);
+    const VertexCorners ring(united.F, united.vertices);
+    std::vector<uint64_t> keys(size_t(united.F.size()));
+    parallel_chunks(united.vertices, crease_grain, [&](size_t begin, size_t end) {
+        CornerGroups groups(united.F, normals, has_area, least_cosine);
         for (size_t v = begin; v < end; ++v)
             groups.group(std::span(ring.corners).subspan(ring.first[v], ring.first[v + 1] - ring.first[v]),
                          keys);
@@ -102,15 +119,45 @@ std::vector<uint64_t> group_corners(const MeshData& mesh, float crease_angle_deg
     return keys;
 }
 
-}  // namespace
-
-void split_creases(MeshData& mesh, float crease_angle_deg) {
-    const std::vector<uint64_t> keys = group_corners(mesh, crease_angle_deg);
-    Array3i::Dense F = mesh.F;
-    const CornerSplit split = split_corners({F.data(), size_t(F.size())}, keys, size_t(mesh.V.rows()));
-    gather_vertices(split, mesh);
-    mesh.F = std::move(F);
-    mesh.N = vertex_normals(mesh.V, mesh.F);
+/// Normals of the vertices of F, whose corners those of `sides` are, too: of these, faces share vertices
+/// where they share normals.
+Array3f normals_by_side(const Array3f& V, const Array3i& F, const Array3i& sides, size_t side_count) {
+    Array3f::Dense place = Array3f::Dense::Zero(Eigen::Index(side_count), 3);
+    for (Eigen::Index i = 0; i < F.size(); ++i) place.row(sides.data()[i]) = V.row(F.data()[i]);
+    const Array3f of_sides = vertex_normals(Array3f(std::move(place)), sides);
+    Array3f::Dense N = Array3f::Dense::Zero(V.rows(), 3);
+    N.col(2).setOnes();
+    for (Eigen::Index i = 0; i < F.size(); ++i) N.row(F.data()[i]) = of_sides.row(sides.data()[i]);
+    return Array3f(std::move(N));
 }
 
-}  // namespace easypbr::io
+}  // namespace
+
+std::vector<int32_t> split_creases(MeshData& mesh, float crease_angle_deg) {
+    const UnitedFaces united(mesh);
+    const std::vector<uint64_t> keys = group_corners(mesh, united, crease_angle_deg);
+    Array3i::Dense F = mesh.F, sides = united.F;
+    CornerSplit split = split_corners({F.data(), size_t(F.size())}, keys, size_t(mesh.V.rows()));
+    const CornerSplit side = split_corners({sides.data(), size_t(sides.size())}, keys, united.vertices);
+    Array2i::Dense E = mesh.E;
+    follow_split(split, {E.data(), size_t(E.size())});
+    const FaceValues values(mesh);
+    gather_vertices(split, mesh);
+    mesh.F = std::move(F);
+    if (!mesh.E.empty()) mesh.E = std::move(E);
+    mesh.N = normals_by_side(mesh.V, mesh.F, Array3i(std::move(sides)), side.source_vertex.size());
+    mesh.uv_tangents = {};
+    values.put_back(mesh);
+    std::vector<int32_t> rows = std::move(split.source_vertex);
+    rows.resize(size_t(mesh.V.rows()), rows.empty() ? 0 : rows.back());
+    return rows;
+}
+
+void split_creases(const Mesh& mesh, float crease_angle_deg) {
+    const auto data = mesh.snapshot();
+    if (!data->F.empty() && data->N.empty() && !data->style.flat.value_or(false))
+        Mesh(mesh).edit([&](MeshData& edited) { split_creases(edited, crease_angle_deg); });
+    for (const Mesh& child : data->children) split_creases(child, crease_angle_deg);
+}
+
+}  // namespace easypbr
