@@ -64,18 +64,19 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
         found = colors(given["C"], count)
         given["C"] = given["C"] if found is None else found
     named = {name: others.pop(name) for name in _OTHERS if name in others}
-    counts = (count, *_face_counts(F, named.get("source_face")))
+    counts = (count, *_face_counts(F, face_of, named.get("source_face")))
     scalars = dict(named.pop("scalars", None) or {})
     scalars.update({word: _scalar(word, value, counts) for word, value in others.items()})
     return make.mesh(scalars=scalars, **given, **named)
 
 
-def _face_counts(F: Any, polygon_of: Any) -> tuple[int, ...]:
-    """How many values may belong to faces: as many as polygons, or as triangles."""
+def _face_counts(F: Any, split: Any, polygon_of: Any) -> tuple[int, ...]:
+    """How many values may belong to faces: as many as the faces that were given, or polygons of these. `split`: the polygon
+    of each triangle, where the triangles F were none of those given."""
     if F is None:
         return ()
-    polygons = () if polygon_of is None else (int(np.max(as_numpy(polygon_of), initial=-1)) + 1,)
-    return (*polygons, len(F))
+    triangles = (len(F),) if split is None else ()
+    return triangles if polygon_of is None else (int(np.max(as_numpy(polygon_of), initial=-1)) + 1, *triangles)
 
 
 def _scalar(word: str, value: Any, counts: tuple[int, ...]) -> NDArray[Any]:
