@@ -1,7 +1,6 @@
 // Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer. After a layer, before a layer: those only
 // that lie before one layer of surfaces that light passes, and behind the next.
 #include "common_lanes.glsl"
-#include "common_encoding.glsl"
 #include "common_camera.glsl"
 
 #feature DEPTH_ONLY is_depth_only
@@ -9,11 +8,8 @@
 #feature BEFORE is_before_layer
 
 uniform sampler2D u_depth_target;
-uniform sampler2D u_normal;
 uniform sampler2D u_last_depth;  // of the layer behind; 0: all lines have been drawn
-uniform sampler2D u_last_normal;
 uniform sampler2D u_next_depth;  // of the layer before; 0: there is nothing more before this pixel's lines
-uniform sampler2D u_next_normal;
 uniform sampler2D u_nearest_line;  // depth that the first pass found
 uniform float u_half_width;   // pixels
 uniform float u_dash;         // pixels, 0: solid
@@ -32,42 +28,51 @@ flat in vec3 v_table;  // places of the whole segment's values, and the row
 
 layout(location = 0) out vec4 o_color;
 
-// How much the surface's distance changes over a pixel, by its plane: a line on it must not be cut by its slope.
-float change_per_pixel(vec2 pixel, float z, vec2 normal) {
-    vec3 n = oct_decode(normal * 2.0 - 1.0) * u_world_from_view;
-    vec2 scale = u_unproject.xy * 2.0 / u_size;
-    float change = abs(n.x) * scale.x + abs(n.y) * scale.y;
-    if (is_orthographic) return change / max(abs(n.z), 0.05);
-    vec3 ray = vec3((ndc_of_pixel(pixel) + u_unproject.zw) * u_unproject.xy, -1.0);
-    return z * change / max(abs(dot(n, ray)), 0.05);
+// How much the reversed depth of a surface changes per pixel towards one side. Over a plane each step is the same. Past the
+// surface's edge one of two is large, which says nothing of its slope.
+float change_towards(sampler2D target, vec2 pixel, float surface, vec2 way) {
+    float next = textureLod(target, (pixel + way) / u_size, 0.0).r;
+    float second = textureLod(target, (pixel + 2.0 * way) / u_size, 0.0).r;
+    return min(abs(next - surface), abs(second - next));
 }
 
-bool is_behind(float surface, vec2 normal, vec2 pixel, float depth) {
-    float z = axial_distance(surface);
-    float tolerance = change_per_pixel(pixel, z, normal) * (u_half_width + 1.0) + 1e-5 * z;
-    return surface > 0.0 && axial_distance(depth) > z + tolerance;
+// The same along both axes. One side at least is that of the pixel's own face: the other may be across a crease, where a
+// step is small if the faces slope in opposite ways.
+float change_per_pixel(sampler2D target, vec2 pixel, float surface) {
+    float right = change_towards(target, pixel, surface, vec2(1.0, 0.0));
+    float left = change_towards(target, pixel, surface, vec2(-1.0, 0.0));
+    float below = change_towards(target, pixel, surface, vec2(0.0, 1.0));
+    float above = change_towards(target, pixel, surface, vec2(0.0, -1.0));
+    return max(right, left) + max(below, above);
+}
+
+// A line on the surface must not be cut by its slope: shading normals do not tell it, neighbours do.
+bool is_behind(sampler2D target, float surface, vec2 pixel, float depth) {
+    bool is_deeper = surface > 0.0 && depth < surface;
+    if (!any_lane(is_deeper)) return is_deeper;
+    float limit = surface - change_per_pixel(target, pixel, surface) * (u_half_width + 1.0);
+    float z = axial_distance(limit);
+    return is_deeper && limit > 0.0 && axial_distance(depth) > z + 1e-5 * abs(z);
 }
 
 bool is_hidden(vec2 pixel, float depth) {
     if (u_always > 0.5) return false;
-    vec2 uv = pixel / u_size;
-    return is_behind(textureLod(u_depth_target, uv, 0.0).r, textureLod(u_normal, uv, 0.0).rg, pixel, depth);
+    float surface = textureLod(u_depth_target, pixel / u_size, 0.0).r;
+    return is_behind(u_depth_target, surface, pixel, depth);
 }
 
 // Before the layer behind: what is not is drawn with another one.
 bool is_after(vec2 pixel, float depth) {
     if (!is_after_layer) return true;
-    vec2 uv = pixel / u_size;
-    float last = textureLod(u_last_depth, uv, 0.0).r;
-    return last > 0.0 && !is_behind(last, textureLod(u_last_normal, uv, 0.0).rg, pixel, depth);
+    float last = textureLod(u_last_depth, pixel / u_size, 0.0).r;
+    return last > 0.0 && !is_behind(u_last_depth, last, pixel, depth);
 }
 
 // Behind the layer before.
 bool is_before(vec2 pixel, float depth) {
     if (!is_before_layer) return true;
-    vec2 uv = pixel / u_size;
-    float next = textureLod(u_next_depth, uv, 0.0).r;
-    return next <= 0.0 || is_behind(next, textureLod(u_next_normal, uv, 0.0).rg, pixel, depth);
+    float next = textureLod(u_next_depth, pixel / u_size, 0.0).r;
+    return next <= 0.0 || is_behind(u_next_depth, next, pixel, depth);
 }
 
 // A line is as deep as half its width: what lies no further behind the nearest one is not hidden, so that the

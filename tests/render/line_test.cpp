@@ -278,27 +278,111 @@ TEST(Lines, HideEachOther) {
     }
 }
 
-// A wireframe lies in its surface: no edge may be cut by the surface's slope, at any view angle.
-TEST(Lines, WireframesAreWholeOnSlopes) {
-    for (const double elevation : {5.0, 20.0, 45.0, 80.0}) {
+/// A square with a normal texture that leans all shading normals, components in [-1, 1].
+Mesh leaning_square(float half, const Vec3& normal) {
+    Image normals(1, 1, 3, PixelType::u8);
+    for (int c = 0; c < 3; ++c)
+        normals.at<uint8_t>(0, 0)[c] = uint8_t(std::lround((normal[c] * 0.5f + 0.5f) * 255));
+    Material material;
+    material.normal_texture.image = std::make_shared<Image>(normals);
+    return facing_square(half, material);
+}
+
+float most_green(const Image& image) {
+    float most = 0;
+    for (size_t i = 1; i < image.pixels<float>().size(); i += 4)
+        most = std::max(most, image.pixels<float>()[i]);
+    return most;
+}
+
+// What hides a line is where a surface is, not how its shading normal leans: here across the view, as if the
+// square were seen edge-on. The line is far from the square's borders, and nothing is lit.
+TEST(Lines, AreHiddenWhateverTheShadingNormal) {
+    const Vec3 normal(0.98f, 0, 0.2f);
+    for (const bool native : {true, false}) {
+        Scene scene;
+        scene.show(leaning_square(0.5f, normal), "square");
+        scene.show(segment(Vec3(-0.2f, 0, -0.3f), Vec3(0.2f, 0, -0.3f)), "line");
+        app::Session session = plain_session(scene, 101);
+        session.allow_native_shading(native);
+        session.settings().style.line_color = Vec3(0, 1, 0);
+        session.settings().style.line_width = 5.0f;
+        look_from(session, 4 * Vec3d(-0.2, 0, 0.98));
+        EXPECT_EQ(most_green(render_linear(session)), 0.0f) << native;
+    }
+}
+
+// Beside a surface's edge the depth changes by far more than its slope: that hides no less.
+TEST(Lines, AreHiddenUpToSilhouettes) {
+    for (const bool native : {true, false}) {
         Scene scene;
         scene.show(facing_square(0.5f), "square");
-        app::Session session = plain_session(scene, 200);
-        session.settings().style.show_wireframe = true;
+        scene.show(segment(Vec3(-0.9f, 0, -0.2f), Vec3(0.9f, 0, -0.2f)), "line");
+        app::Session session = looking_down(scene, 101);
+        session.allow_native_shading(native);
         session.settings().style.line_color = Vec3(0, 1, 0);
-        session.settings().style.line_width = 3.0f;
-        const double e = radians(90 - elevation);
-        look_from(session, Vec3d(0, 4 * std::sin(e), 4 * std::cos(e)));
-        // Along the diagonal the middle pixel of the line is green, if only by the fringe of a nearer edge.
+        session.settings().style.line_width = 5.0f;
         const Image image = render_linear(session);
-        const Camera camera = session.camera();
-        const Mat4d clip = camera.projection_matrix(1) * camera.view();
-        for (double t = -0.45; t <= 0.45; t += 0.01) {
-            const Eigen::Vector4d p = clip * Eigen::Vector4d(t, t, 0, 1);
-            const int x = int((p.x() / p.w() + 1) * 100), y = int((1 - p.y() / p.w()) * 100);
-            ASSERT_GT(image.at<float>(x, y)[1], 0.8f) << elevation << ' ' << t;
-        }
+        // The square's border is at 25.25 pixels from either side, the line's ends at 5.05. 1e-3: halves.
+        for (int x = 6; x < 95; ++x)
+            EXPECT_NEAR(image.at<float>(x, 50)[1], x >= 25 && x < 76 ? 0 : 1, 1e-3f) << x << ' ' << native;
     }
+}
+
+/// The least green of the pixels that points of a way from `a` to `b` fall into.
+float least_green(app::Session& session, int size, const Vec3d& a, const Vec3d& b) {
+    const Image image = render_linear(session);
+    const Camera camera = session.camera();
+    const Mat4d clip = camera.projection_matrix(1) * camera.view();
+    float least = 1;
+    for (double t = 0; t <= 1; t += 0.01) {
+        const Eigen::Vector4d p = clip * (a + t * (b - a)).homogeneous();
+        const int x = int((p.x() / p.w() + 1) * size / 2), y = int((1 - p.y() / p.w()) * size / 2);
+        least = std::min(least, image.at<float>(x, y)[1]);
+    }
+    return least;
+}
+
+// A wireframe lies in its surface: no edge may be cut by the surface's slope, at any view angle, wherever
+// shading normals lean.
+TEST(Lines, WireframesAreWholeOnSlopes) {
+    for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0.98f, 0.2f), Vec3(0, -0.98f, 0.2f)})
+        for (const double elevation : {5.0, 20.0, 45.0, 80.0}) {
+            Scene scene;
+            scene.show(leaning_square(0.5f, normal), "square");
+            app::Session session = plain_session(scene, 200);
+            session.settings().style.show_wireframe = true;
+            session.settings().style.line_color = Vec3(0, 1, 0);
+            session.settings().style.line_width = 3.0f;
+            const double e = radians(90 - elevation);
+            look_from(session, Vec3d(0, 4 * std::sin(e), 4 * std::cos(e)));
+            // Along the diagonal the middle pixel of the line is green, if only by the fringe of a nearer
+            // edge.
+            EXPECT_GT(least_green(session, 200, Vec3d(-0.45, -0.45, 0), Vec3d(0.45, 0.45, 0)), 0.8f)
+                << elevation << ' ' << normal.y();
+        }
+}
+
+// At the bottom of a valley the depth hardly changes from one side to the other, however steep both are.
+TEST(Lines, WireframesAreWholeInCreases) {
+    Array3f::Dense V(6, 3);
+    V << -0.5f, 0.3f, 0.5f, 0.5f, 0.3f, 0.5f, 0.5f, 0, 0, -0.5f, 0, 0, 0.5f, -0.3f, 0.5f, -0.5f, -0.3f, 0.5f;
+    Array3i::Dense F(4, 3);
+    F << 0, 3, 2, 0, 2, 1, 3, 5, 4, 3, 4, 2;
+    for (const bool native : {true, false})
+        for (const double y : {-0.5, -0.1, 0.0, 0.3}) {
+            Scene scene;
+            scene.show(Mesh{Array3f(V), Array3i(F)}, "valley");
+            app::Session session = plain_session(scene, 200);
+            session.allow_native_shading(native);
+            session.settings().style.show_wireframe = true;
+            session.settings().style.line_color = Vec3(0, 1, 0);
+            session.settings().style.line_width = 3.0f;
+            look_from(session, Vec3d(0, y, 4));
+            // The line covers the pixel that its middle runs through, and is behind the surface there.
+            EXPECT_GT(least_green(session, 200, Vec3d(-0.3, 0, 0), Vec3d(0.3, 0, 0)), 0.99f)
+                << y << ' ' << native;
+        }
 }
 
 TEST(Lines, BehindTheCameraAreCut) {

@@ -12,7 +12,7 @@
 namespace easypbr::render {
 namespace {
 
-constexpr unsigned table_unit = 7;  ///< after those of surfaces and layers
+constexpr unsigned table_unit = 4;  ///< after those of surfaces and layers
 
 /// sRGB colours that stand out on most surfaces.
 const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
@@ -97,7 +97,6 @@ void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuf
     using Part = OverlayStep::Part;
     if (step.part == Part::begin) {
         opaque_ = step.opaque;
-        normal_ = &targets.normal;
         has_last_ = false;
         return step.host ? begin(frame, items, targets, *step.host) : begin(frame, items, targets);
     }
@@ -126,21 +125,16 @@ void LinePrimitive::keep_last(const GBuffer& layer) {
     if (!last_depth_) {
         const Vec2i size = layer.depth.size();
         last_depth_ = gl::Texture(gl::Format::r32f, size.x(), size.y());
-        last_normal_ = gl::Texture(gl::Format::rg16, size.x(), size.y());
     }
     gl::copy(layer.depth.texture(), last_depth_);
-    gl::copy(layer.normal.texture(), last_normal_);
     has_last_ = true;
 }
 
 void LinePrimitive::keep_host_last(const GBuffer& layer) {
-    const auto keep = [](const Target& from, Target& to) {
-        if (to.size() != from.size()) to = Target(from.format(), from.size());
-        to.write(from.area());
-        std::ranges::copy(from.pixels<std::byte>(), to.pixels<std::byte>().begin());
-    };
-    keep(layer.depth, host_last_depth_);
-    keep(layer.normal, host_last_normal_);
+    if (host_last_depth_.size() != layer.depth.size())
+        host_last_depth_ = Target(layer.depth.format(), layer.depth.size());
+    host_last_depth_.write(layer.depth.area());
+    std::ranges::copy(layer.depth.pixels<float>(), host_last_depth_.pixels<float>().begin());
     has_last_ = true;
 }
 
@@ -171,14 +165,8 @@ void LinePrimitive::bind_surfaces(const gl::Program& program, const GBuffer* nex
         program.set(sampler, int(unit));
     };
     bind(opaque_->texture(), "u_depth_target", 0);
-    bind(normal_->texture(), "u_normal", 1);
-    if (has_last_) {
-        bind(last_depth_, "u_last_depth", 3);
-        bind(last_normal_, "u_last_normal", 4);
-    }
-    if (!next) return;
-    bind(next->depth.texture(), "u_next_depth", 5);
-    bind(next->normal.texture(), "u_next_normal", 6);
+    if (has_last_) bind(last_depth_, "u_last_depth", 1);
+    if (next) bind(next->depth.texture(), "u_next_depth", 3);
 }
 
 void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next) {
@@ -224,12 +212,10 @@ void LinePrimitive::set_layers(ShaderInputs& values, Kind kind, const GBuffer* n
     if (kind == Kind::ordered && has_last_) {
         values.define("AFTER");
         values.set("u_last_depth", host_last_depth_);
-        values.set("u_last_normal", host_last_normal_);
     }
     if (!next) return;
     values.define("BEFORE");
     values.set("u_next_depth", next->depth);
-    values.set("u_next_normal", next->normal);
 }
 
 void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer& targets,
@@ -247,7 +233,6 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         set_style(of_item, item);
         set_layers(of_item, kind, next);
         of_item.set("u_depth_target", *opaque_);
-        of_item.set("u_normal", *normal_);
         if (kind != Kind::nearest) of_item.set("u_nearest_line", nearest_);
         if (item.colors.values)
             of_item.set("u_table", textures_.host(item.material.base_color_texture, true));

@@ -46,11 +46,11 @@ class LinePrimitive final : public Primitive {
     Target nearest_;  ///< R32F, natively: reversed depth of the nearest line
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
-    bool in_host_memory_ = false;                         ///< where the nearest depths are
-    const Target *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin()
+    bool in_host_memory_ = false;     ///< where the nearest depths are
+    const Target* opaque_ = nullptr;  ///< since begin()
     bool has_last_ = false;
-    gl::Texture last_depth_, last_normal_;       ///< of the layer that was drawn last
-    Target host_last_depth_, host_last_normal_;  ///< the same natively
+    gl::Texture last_depth_;  ///< of the layer that was drawn last
+    Target host_last_depth_;  ///< the same natively
 };
 
 }  // namespace easypbr::render
