@@ -72,7 +72,7 @@ def test_merge_keeps_materials_and_fills_in():
     np.testing.assert_array_equal(both.V[:24].max(axis=0), [3.5, 0.5, 0.5])
     assert (both.C[24:] == 1).all()
     three = Mesh.merge(*[shapes.box()] * 3)
-    assert len(three.V) == 72
+    assert len(three.V) == 72 and len(three.materials) == 1
     with pytest.raises(easypbr.ArgumentError, match="expected meshes"):
         red.merge("ball")
 

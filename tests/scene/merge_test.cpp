@@ -112,6 +112,31 @@ TEST(Merged, CountsOnThroughFacesEdgesPartsAndMaterials) {
     EXPECT_EQ(both.materials.at(size_t(both.parts[1].material)).roughness, 0.125f);
 }
 
+// Equal values and the same textures are one material; names are values.
+TEST(Merged, JoinsEqualMaterials) {
+    const auto image = std::make_shared<const Image>(1, 1, 3, PixelType::u8),
+               copy = std::make_shared<const Image>(*image);
+    Material rough, named, textured, other_image, mirrored;
+    rough.roughness = 0.125f;
+    named.name = "steel";
+    textured.normal_texture.image = image;
+    other_image.normal_texture.image = copy;
+    mirrored = textured;
+    mirrored.normal_texture.wrap_u = Wrap::mirror;
+    const std::vector<Material> different{Material(), rough, named, textured, other_image, mirrored};
+    MeshData a = triangle("a"), b = triangle("b"), none = triangle("none");
+    a.materials = different;
+    a.parts = {{"a", 0, 1, 1}};
+    b.materials = {textured, rough, mirrored, textured};
+    b.parts = {{"b", 0, 1, 3}};
+    const MeshData whole = merged(std::vector{a, b, none, b});
+    EXPECT_NO_THROW(validate(whole));
+    EXPECT_EQ(whole.materials, different);
+    ASSERT_EQ(whole.parts.size(), 4u);
+    const int expected[] = {1, 3, 0, 3};
+    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(whole.parts[i].material, expected[i]) << i;
+}
+
 TEST(Merged, FillsInWhatOnlySomeHave) {
     MeshData a = triangle(), b = triangle();
     a.C = ArrayXf(ArrayXf::Dense::Constant(3, 4, 0.25f));

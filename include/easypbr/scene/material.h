@@ -27,6 +27,8 @@ struct Texture {
     int channel = 0;  ///< the channel read by a one-channel use (metallic, roughness, occlusion, ...)
 
     explicit operator bool() const { return image != nullptr; }
+    /// Whether it is the same image object, used in the same way.
+    bool operator==(const Texture&) const = default;
 };
 
 /// GLSL with a function `void surface(inout Surface s)` that modifies the surface before lighting; see
@@ -113,6 +115,9 @@ struct Material {
     Texture anisotropy_texture;  ///< rg: direction, as in a normal map; b: strength
 
     SurfaceShader shader;  ///< of faces
+
+    /// Whether all values are equal and all textures, as Texture::operator== has it.
+    bool operator==(const Material&) const = default;
 
     bool has_textures() const;
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
@@ -151,19 +152,50 @@ Array3f joined_normals(Meshes meshes) {
     });
 }
 
+/// Materials of several meshes, in their order: equal ones once.
+class JoinedMaterials {
+  public:
+    explicit JoinedMaterials(std::vector<Material>& materials) : materials_(materials) {}
+
+    int index_of(const Material& material) {
+        // Materials that are alike otherwise tend to differ in these.
+        const size_t key = std::hash<std::string>()(material.name) ^
+                           std::hash<const Image*>()(material.base_color_texture.image.get()) ^
+                           std::hash<float>()(material.base_color.dot(Vec3(1, 3, 5)));
+        const auto [begin, end] = known_.equal_range(key);
+        for (auto known = begin; known != end; ++known)
+            if (materials_[size_t(known->second)] == material) return known->second;
+        const int index = int(materials_.size());
+        materials_.push_back(material);
+        known_.emplace(key, index);
+        return index;
+    }
+
+  private:
+    std::vector<Material>& materials_;
+    std::unordered_multimap<size_t, int> known_;
+};
+
+/// Where the materials of a mesh are in the joined ones; of a mesh without any, the default.
+std::vector<int> join_materials(const MeshData& mesh, JoinedMaterials& joined) {
+    std::vector<int> places;
+    for (const Material& material : mesh.materials) places.push_back(joined.index_of(material));
+    if (places.empty()) places.push_back(joined.index_of(Material()));
+    return places;
+}
+
 void join_parts(MeshData& whole, Meshes meshes) {
+    JoinedMaterials joined(whole.materials);
     int faces = 0;
     for (const MeshData& mesh : meshes) {
-        const int materials = int(whole.materials.size());
+        const std::vector<int> places = join_materials(mesh, joined);
         std::vector<MeshPart> parts = mesh.parts;
         if (parts.empty() && !mesh.F.empty()) parts = {{mesh.name, 0, int(mesh.F.rows()), 0}};
         for (MeshPart& part : parts) {
             part.first_face += faces;
-            part.material += materials;
+            part.material = places.at(size_t(part.material));
             whole.parts.push_back(part);
         }
-        whole.materials.insert(whole.materials.end(), mesh.materials.begin(), mesh.materials.end());
-        if (mesh.materials.empty()) whole.materials.emplace_back();
         faces += int(mesh.F.rows());
     }
 }

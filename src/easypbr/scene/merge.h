@@ -19,13 +19,13 @@ Array3f positions_from(const MeshData& mesh, const Vec3d& offset);
 
 /// All vertices, faces and edges in the order of the meshes, which count in one common frame: poses and
 /// children are not looked at, offsets are. Name, file, style, pose and offset are those of the first.
-/// Materials and parts are kept, one part for each mesh that has none. What only some of the meshes have is
-/// filled in for the others: normals computed from the faces, zero where there are none (no normal); white;
-/// uv 0; intensity 0; label -1; scalar NaN. Tangents with lengths and voxel sizes are kept only when all
-/// meshes have them (the same), for an ellipse without axes would vanish. Labels or scalars of the same name
-/// that belong to faces here and to vertices there cannot be one array: those of the later mesh are left out
-/// with a warning, and so are other label maps than the first one. Throws ArgumentError when vertices or
-/// faces are too many for 32-bit indices.
+/// Parts are kept, one for each mesh that has none, and materials, equal ones once. What only some of the
+/// meshes have is filled in for the others: normals computed from the faces, zero where there are none (no
+/// normal); white; uv 0; intensity 0; label -1; scalar NaN. Tangents with lengths and voxel sizes are kept
+/// only when all meshes have them (the same), for an ellipse without axes would vanish. Labels or scalars of
+/// the same name that belong to faces here and to vertices there cannot be one array: those of the later mesh
+/// are left out with a warning, and so are other label maps than the first one. Throws ArgumentError when
+/// vertices or faces are too many for 32-bit indices.
 MeshData merged(std::span<const MeshData> meshes);
 
 /// The offset of the first node that has vertices: what the tree's other offsets are relative to.
