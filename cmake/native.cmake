@@ -5,7 +5,7 @@ set(native_shaders lighting_surface lighting_surface_extended background_environ
                    lighting_catcher ground_finish occlusion_normals display_surface exact_surface
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
                    outline_edges outline_lines denoise_estimate denoise_smooth transparency_layer transparency_behind
-                   downsample_picture eye_dome_layers)
+                   downsample_picture eye_dome_layers shadow_share)
 set(native_surface_shaders mesh_resolve mesh_extended shadow_depth)
 set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended display_color)
 set(native_line_shaders overlay_lines)

@@ -73,3 +73,33 @@ def test_a_texture_with_broken_values_is_mended(size):
     values = {"bloom": {"enabled": True, "threshold": 0}}
     picture = easypbr.render(mesh, size=size, samples=4, hdr=True, settings=values)
     assert np.isfinite(picture).all()
+
+
+@pytest.mark.parametrize("path", [False, True])
+@pytest.mark.parametrize("samples", [1, 16])
+def test_shadows_of_a_transparent_image_are_as_dark_on_a_white_page(size, samples, path):
+    scene = Scene()
+    scene.show(shapes.box(), "box")
+    settings = {"ground.mode": "shadow", "path.enabled": path, "image.antialias": "none", "ssao.enabled": True}
+    drawn = {}
+    for name, background in (("cut", {"background.mode": "transparent"}), ("page", {"background.color": "#ffffff"})):
+        drawn[name] = Viewer(size, {**settings, **background}, scene).render(samples=samples) / 255.0
+    alpha = drawn["cut"][..., 3:]
+    blended = drawn["cut"][..., :3] * alpha + 1 - alpha  # as viewers of PNG do
+    shadow = (drawn["cut"][..., :3] == 0).all(axis=2) & (alpha[..., 0] > 0)
+    assert shadow.sum() > 100 and alpha[shadow].max() > 0.1
+    # 2: both are rounded to codes, and sums of frames are kept in floats.
+    assert abs(blended - drawn["page"][..., :3])[shadow].max() <= 2 / 255
+    assert alpha.max() == 1  # the box
+
+
+def test_the_alpha_of_surfaces_before_a_shadow_catcher_is_what_they_cover(size):
+    """Before a ground that no shadow falls on: with it and without it the same."""
+    scene = Scene()
+    scene.show(shapes.box(), "box")
+    settings = {"background.mode": "transparent", "ground.shadow_strength": 0.0}
+    with_ground, without = (Viewer(size, {**settings, "ground.mode": mode}, scene).render(samples=8) for mode in ("shadow", "none"))
+    partly = (without[..., 3] > 0) & (without[..., 3] < 255)
+    assert partly.any()
+    # 1: the share of the ground is a sum of its own.
+    assert abs(with_ground.astype(int) - without).max() <= 1

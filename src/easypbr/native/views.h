@@ -108,6 +108,7 @@ using u_normal = Rg16;
 using u_material = Rgba8;
 using u_depth_target = R32f;
 using u_part = R32f;
+using u_shadow_share = R32f;
 using u_dfg = Rg16fLinear;
 using u_ltc = Rgba32f;
 using u_emission = Rgba32f;

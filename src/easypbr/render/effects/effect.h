@@ -17,6 +17,7 @@ struct LitPicture {
     const Target* radiance = nullptr;  ///< as GBuffer::radiance
     const Target* overlay = nullptr;   ///< as GBuffer::overlay, where there is one
     const Glow* glow = nullptr;        ///< where bloom spreads light
+    const Target* caught = nullptr;    ///< light of a shadow catcher, see GroundPass::caught()
     const GBuffer* guides = nullptr;   ///< for denoising, where layers change what the targets hold
     PixelRect covered;                 ///< all surfaces, lines and layers are inside
     bool partly_covered = false;       ///< the radiance may hold coverages between 0 and 1

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/scene/resolve.h"
 
@@ -72,6 +74,11 @@ void add_image(BackgroundImage& background, const Frame& frame, const Target& li
     values.set("u_background_image", light);
 }
 
+/// Whether codes hold a shadow by how viewers blend it.
+bool has_shadow(const LitPicture& lit, Encoding encoding) {
+    return lit.caught && encoding != Encoding::scene_linear;
+}
+
 /// Longest side of a background image that native shaders read.
 constexpr int most_native_side = 1 << 15;
 
@@ -84,23 +91,6 @@ void add_lit(const LitPicture& lit, const char* radiance, ShaderInputs& values) 
     values.set("u_bloom", lit.glow->parameters);
     values.set("u_glow", *lit.glow->light);
     values.set("u_glow_size", lit.glow->size());
-}
-
-ShaderInputs display_inputs(const Frame& frame, const LitPicture& lit, Encoding encoding, const Target* sum) {
-    ShaderInputs values;
-    values.define(tone_defines(frame, lit, encoding));
-    if (encoding == Encoding::scene_linear) values.define("LINEAR_OUTPUT");
-    values.set("u_size", Vec2(frame.size.cast<float>()));
-    values.set("u_exposure", exposure_of(frame, encoding));
-    values.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
-    values.set("u_background", background_color(frame));
-    if (sum) {
-        values.define("SUM");
-        values.set("u_source", *sum);
-    } else {
-        add_lit(lit, "u_source", values);
-    }
-    return values;
 }
 
 /// Of a frame that is added to others.
@@ -185,6 +175,28 @@ gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPic
 
 }  // namespace
 
+ShaderInputs OutputPass::display_inputs(const Frame& frame, const LitPicture& lit, const Target* sum) const {
+    ShaderInputs values;
+    values.define(tone_defines(frame, lit, encoding_));
+    if (encoding_ == Encoding::scene_linear) values.define("LINEAR_OUTPUT");
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_exposure", exposure_of(frame, encoding_));
+    values.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
+    values.set("u_background", background_color(frame));
+    if (has_shadow(lit, encoding_)) {
+        values.define("SHADOW");
+        values.set("u_shadow_share", shadow_share_);
+        values.set("u_share_scale", 1.0f / float(frame.sample_index + 1));
+    }
+    if (sum) {
+        values.define("SUM");
+        values.set("u_source", *sum);
+    } else {
+        add_lit(lit, "u_source", values);
+    }
+    return values;
+}
+
 int BackgroundImage::halvings(const Vec2i& picture, int most_side) const {
     const float shown = covering_scale(*image_, picture).x() * float(image_->width());
     int count = 0;
@@ -230,6 +242,8 @@ void OutputPass::begin(Vec2i size, Encoding encoding) {
         picture_ = Target(format, size);
         sum_ = Target(gl::Format::rgba32f, size);
         aliased_ = Target(format, size);
+        shadow_share_ = Target(gl::Format::r32f, size);
+        share_framebuffer_ = gl::Framebuffer();
         picture_framebuffer_ = gl::Framebuffer();
         sum_framebuffer_ = gl::Framebuffer();
     }
@@ -251,6 +265,7 @@ const gl::Texture& OutputPass::texture() const {
 void OutputPass::accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces) {
     const bool first = frame.sample_index == 0;
     drawn_ = first ? lit.covered : united(drawn_, lit.covered);
+    add_shadow_share(frame, lit, surfaces);
     if (frame.averages_radiance) return add_radiance(frame, lit, surfaces);
     const ShaderInputs values = sample_inputs(frame, lit, encoding_);
     if (lit.radiance->is_ahead() && (first || sum_.is_ahead())) return add_natively(frame, lit, values);
@@ -323,6 +338,41 @@ void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const S
                       transfers_);
 }
 
+// It is to the sum or the mean what shadows are in it: of a sum of displayed frames overlays are a part.
+void OutputPass::add_shadow_share(const Frame& frame, const LitPicture& lit_frame, const GBuffer& surfaces) {
+    if (!has_shadow(lit_frame, encoding_)) return;
+    const bool is_displayed = frame.sample_count > 1 && !frame.averages_radiance;
+    LitPicture lit = lit_frame;
+    if (!is_displayed) {
+        lit.overlay = nullptr;
+        lit.glow = nullptr;
+        lit.partly_covered = true;
+    }
+    ShaderInputs values = sample_inputs(frame, lit, is_displayed ? encoding_ : Encoding::scene_linear);
+    values.set("u_material", surfaces.material);
+    values.set("u_depth_target", surfaces.depth);
+    GroundPass::set_caught(values, *frame.resolved, *lit.caught);
+    const bool first = frame.sample_index == 0;
+    if (lit.radiance->is_ahead() && (first || shadow_share_.is_ahead())) {
+        if (first) {
+            shadow_share_.write(shadow_share_.whole());
+            std::ranges::fill(shadow_share_.pixels<float>(), 0.0f);
+        }
+        return share_.shade(values,
+                            {.target = &shadow_share_, .area = frame.whole(), .store = native::Store::add},
+                            transfers_);
+    }
+    for (const Target* target : std::initializer_list<const Target*>{
+             lit.radiance, lit.caught, &surfaces.material, &surfaces.depth, &shadow_share_})
+        target->upload(transfers_);
+    if (!share_framebuffer_) share_framebuffer_ = gl::Framebuffer({&shadow_share_.attachment()});
+    shadow_share_.drawn();
+    const float zero[4] = {0, 0, 0, 0};
+    if (first) share_framebuffer_.clear_color(0, zero);
+    share_framebuffer_.bind();
+    share_.draw(values, {.blending = gl::add});
+}
+
 LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
     LitPicture mean = lit;
     mean.radiance = &mean_.mean(denoising_of(frame), frame.resolved->exposure, transfers_);
@@ -333,15 +383,17 @@ LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
 }
 
 void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, BackgroundImage* background,
-                        const GBuffer* exact) {
+                        const GBuffer& surfaces, const GBuffer* exact) {
     const bool averages_radiance = frame.averages_radiance;
+    if (frame.sample_count == 1 && !averages_radiance) add_shadow_share(frame, lit_frame, surfaces);
     const LitPicture lit = averages_radiance ? mean_of(frame, lit_frame) : lit_frame;
     const Target* sum = frame.sample_count > 1 && !averages_radiance ? &sum_ : nullptr;
     const Target& source = sum ? *sum : *lit.radiance;
     if (source.is_ahead()) return finish_natively(frame, lit, background, exact);
 
     source.upload(transfers_);
-    ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
+    if (has_shadow(lit, encoding_)) shadow_share_.upload(transfers_);
+    ShaderInputs values = display_inputs(frame, lit, sum);
     gl::DrawState state;
     picture_.drawn();
     framebuffer().bind();
@@ -366,7 +418,7 @@ void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, Back
                                  const GBuffer* exact) {
     const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
     const PixelRect area = background || is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
-    ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
+    ShaderInputs values = display_inputs(frame, lit, sum);
     if (background)
         add_image(*background, frame, background->light(frame.picture_size, most_native_side), values);
     picture_.write(picture_.whole());

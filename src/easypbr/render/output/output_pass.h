@@ -61,8 +61,10 @@ class OutputPass {
     /// Which still get samples.
     const SampledTiles& tiles() const { return mean_.tiles(); }
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
+    /// `surfaces`: those of the last frame.
     /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
-    void finish(const Frame& frame, const LitPicture& lit, BackgroundImage* background, const GBuffer* exact);
+    void finish(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
+                const GBuffer& surfaces, const GBuffer* exact);
     /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
     /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
     void write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers);
@@ -87,16 +89,21 @@ class OutputPass {
     /// The mean of such frames so far, as if it were the only one.
     LitPicture mean_of(const Frame& frame, const LitPicture& lit);
     void add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values);
+    /// Adds what a frame's surfaces leave of a shadow catcher, where the picture tells it from its shadow.
+    void add_shadow_share(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
+    ShaderInputs display_inputs(const Frame& frame, const LitPicture& lit, const Target* sum) const;
 
     Transfers& transfers_;
     PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
     Target sum_, picture_, aliased_;
-    RadianceMean mean_;  ///< of frames whose radiance is averaged
-    gl::Framebuffer sum_framebuffer_, sample_framebuffer_;
+    Target shadow_share_;  ///< R32F, the sum of all frames
+    RadianceMean mean_;    ///< of frames whose radiance is averaged
+    gl::Framebuffer sum_framebuffer_, sample_framebuffer_, share_framebuffer_;
     mutable gl::Framebuffer picture_framebuffer_;
     ScreenShader accumulate_{"accumulate_sample.frag", native::Shader::accumulate_sample};
     ScreenShader display_{"display_output.frag", native::Shader::display_output};
+    ScreenShader share_{"shadow_share.frag", native::Shader::shadow_share};
     ScreenShader exact_{"exact_surface.frag", native::Shader::exact_surface};
     ScreenShader fxaa_{"antialias_fxaa.frag", native::Shader::antialias_fxaa};
 };

@@ -95,6 +95,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 
     LitPicture lit{.radiance = &targets_.radiance,
                    .overlay = with_overlay ? &targets_.overlay : nullptr,
+                   .caught = contents.ground ? ground_.caught(resolved) : nullptr,
                    .covered = has_layers ? frame.covered : seen.covered,
                    .partly_covered = contents.ground};
     if (has_layers) draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);

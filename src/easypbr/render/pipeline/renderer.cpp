@@ -223,7 +223,8 @@ void Renderer::finish() {
         if (custom_.empty() && !exact && !picture.holds_surfaces) release_targets();
     }
     timer.run("output", [&] {
-        output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images), exact);
+        output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images),
+                       pipeline_.targets(), exact);
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });

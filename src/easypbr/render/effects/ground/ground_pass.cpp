@@ -79,6 +79,18 @@ void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
     light_framebuffer_.clear_color(0, zero);
 }
 
+const Target* GroundPass::caught(const ResolvedSettings& resolved) const {
+    const bool is_seen_through = resolved.settings.background.mode == BackgroundMode::transparent;
+    return is_seen_through && is_shadow_catcher(resolved) ? &light_ : nullptr;
+}
+
+void GroundPass::set_caught(ShaderInputs& values, const ResolvedSettings& resolved, const Target& caught) {
+    const bool is_part = caught.format() == gl::Format::r32f;
+    if (is_part) values.define("PART");
+    values.set(is_part ? "u_part" : "u_light", caught);
+    values.set("u_strength", resolved.settings.ground.shadow_strength);
+}
+
 ShaderInputs GroundPass::finish_inputs(const Frame& frame, const GBuffer& targets,
                                        const Box3d& bounds) const {
     const auto& ground = frame.resolved->settings.ground;
@@ -88,10 +100,7 @@ ShaderInputs GroundPass::finish_inputs(const Frame& frame, const GBuffer& target
     values.set("u_material", targets.material);
     if (ground.mode == GroundMode::shadow) {
         values.define("CATCHER");
-        const bool is_part = light_.format() == gl::Format::r32f;
-        if (is_part) values.define("PART");
-        values.set(is_part ? "u_part" : "u_light", light_);
-        values.set("u_strength", ground.shadow_strength);
+        set_caught(values, *frame.resolved, light_);
         return values;
     }
     values.set("u_depth_target", targets.depth);
@@ -146,7 +155,7 @@ void GroundPass::shade_finish(const Frame& frame, const GBuffer& targets, const 
                    .area = frame.whole(),
                    .store = catches ? native::Store::replace : native::Store::multiply},
                   transfers);
-    light_.release();
+    if (!caught(*frame.resolved)) light_.release();
 }
 
 }  // namespace easypbr::render

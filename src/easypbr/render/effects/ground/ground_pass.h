@@ -40,8 +40,14 @@ class GroundPass {
     const Target& caught_light(const Frame& frame) { return light_of(frame, gl::Format::rgba32f); }
     /// R32F, in its place: the part of the light that arrives.
     const Target& caught_part(const Frame& frame) { return light_of(frame, gl::Format::r32f); }
-    /// Releases caught_light() and caught_part(), whichever was asked for last.
+    /// Releases caught_light() and caught_part(), whichever was asked for last, unless caught() is needed.
     void shade_finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds, Transfers& transfers);
+
+    /// What the frame's shadow is made of, until the next frame: caught_light() or, R32F, caught_part().
+    /// Null where nobody asks: only the codes of a transparent picture tell shadows from surfaces.
+    const Target* caught(const ResolvedSettings& resolved) const;
+    /// What shaders/common_caught.glsl reads of it.
+    static void set_caught(ShaderInputs& values, const ResolvedSettings& resolved, const Target& caught);
 
   private:
     const Target& light_of(const Frame& frame, gl::Format format);
