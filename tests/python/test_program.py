@@ -22,9 +22,10 @@ view.recorder.record("img.png")
 """
 
 
-def run(arguments, folder):
+def run(arguments, folder, **variables):
+    environment = {**os.environ, **variables}
     return subprocess.run(
-        [sys.executable, *arguments], cwd=folder, env=os.environ, capture_output=True, text=True, timeout=300
+        [sys.executable, *arguments], cwd=folder, env=environment, capture_output=True, text=True, timeout=300
     )
 
 
@@ -150,6 +151,15 @@ def test_a_forked_child_ends_beside_its_parent_s_threads(tmp_path, child):
     result = run(["-c", WITH_THREADS, child], tmp_path)
     assert result.returncode == 0, result.stderr
     assert result.stderr == ""
+
+
+@pytest.mark.parametrize("warnings", ["", "0", "1"])
+def test_objects_that_outlive_the_interpreter_are_told_only_when_asked_for(tmp_path, warnings):
+    # As a class that torch keeps: one more reference than there are owners.
+    code = "import ctypes, easypbr; box = easypbr.shapes.box(); ctypes.pythonapi.Py_IncRef(ctypes.py_object(box))"
+    result = run(["-c", code], tmp_path, EASYPBR_LEAK_WARNINGS=warnings)
+    assert result.returncode == 0, result.stderr
+    assert ("leaked" in result.stderr) == (warnings == "1") and (result.stderr == "") == (warnings != "1")
 
 
 def test_the_command_line_can_be_interrupted(tmp_path):

@@ -11,6 +11,7 @@ from playwright.sync_api import expect, sync_playwright
 
 _cache = tempfile.TemporaryDirectory(prefix="easypbr-test-cache-")
 os.environ["EASYPBR_CACHE_DIR"] = _cache.name
+os.environ["EASYPBR_LEAK_WARNINGS"] = "1"  # of this process and of those that tests start
 
 import easypbr  # noqa: E402
 

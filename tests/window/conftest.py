@@ -6,6 +6,7 @@ import pytest
 
 _cache = tempfile.TemporaryDirectory(prefix="easypbr-test-cache-")
 os.environ["EASYPBR_CACHE_DIR"] = _cache.name
+os.environ["EASYPBR_LEAK_WARNINGS"] = "1"  # of this process and of those that tests start
 
 import easypbr  # noqa: E402
 from display import Display, missing_tools  # noqa: E402

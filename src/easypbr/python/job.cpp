@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/variable.h"
 #include "easypbr/python/text.h"
 
 namespace nb = nanobind;
@@ -161,6 +162,8 @@ void throw_as_own(const nb::python_error& error) {
 }
 
 void bind_jobs() {
+    // torch, among others, keeps objects until after the interpreter has ended, where nothing is wrong.
+    if (variable("EASYPBR_LEAK_WARNINGS").value_or("0") == "0") nb::set_leak_warnings(false);
     main_thread =
         nb::cast<unsigned long>(nb::module_::import_("threading").attr("main_thread")().attr("ident"));
     process = getpid();
