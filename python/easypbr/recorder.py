@@ -13,6 +13,7 @@ from .arguments import samples_of
 from .errors import ArgumentError
 from .panels import WindowCallbacks
 
+_DEFAULT_FPS = 30.0
 #: Recorders that may be recording when the program ends.
 _started: "weakref.WeakSet[Recorder]" = weakref.WeakSet()
 if hasattr(os, "register_at_fork"):
@@ -44,7 +45,7 @@ class Recorder:
     def start(
         self,
         path: str | os.PathLike[str],
-        fps: float = 30.0,
+        fps: float = _DEFAULT_FPS,
         size: ArrayLike | None = None,
         samples: int | None = None,
         codec: str = "",
@@ -88,21 +89,23 @@ class Recorder:
         self,
         path: "_easypbr.CameraPath",
         out: str | os.PathLike[str],
-        fps: float = 30.0,
+        fps: float | None = None,
         frames: int | None = None,
         size: ArrayLike | None = None,
         samples: int | None = None,
         codec: str = "",
         on_frame: Callable[[int, float], None] | None = None,
     ) -> int:
-        """Records along a camera path: path.frame_times(fps), or `frames` evenly spaced times. on_frame(number,
-        seconds) is called before each frame, for example to move objects. The camera is restored afterwards. Returns
-        the number of frames."""
+        """Records along a camera path: path.frame_times(fps), or `frames` evenly spaced times. `fps` is 30 by default, or
+        with `frames` path.frame_rate(frames): the recording lasts as long as the path. on_frame(number, seconds) is called
+        before each frame, for example to move objects. The camera is restored afterwards. Returns the number of frames."""
         if not isinstance(path, _easypbr.CameraPath):
             raise ArgumentError(f"record_path: expected a CameraPath, got a {type(path).__name__}")
         before = self._handle.camera_state
         camera = self._handle.camera
         try:
+            if fps is None:
+                fps = _DEFAULT_FPS if frames is None else path.frame_rate(frames)
             times = path.frame_times(fps) if frames is None else path.times(frames)
             with self.start(out, fps, size, samples, codec):
                 # A closed path was on its way before the first frame; on an open one the camera rests until then.

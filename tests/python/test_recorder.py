@@ -146,6 +146,16 @@ def test_record_path(view, size, tmp_path):
         np.testing.assert_array_equal(load_image(tmp_path / f"f_{number}.png"), view.render())
 
 
+def test_so_many_frames_last_as_long_as_the_path(view, tmp_path):
+    times = []
+    note = lambda *_: times.append(view.time)  # noqa: E731
+    view.recorder.record_path(view.turntable(2), tmp_path / "a.gif", frames=8, samples=1, on_frame=note)
+    assert frames_of(tmp_path / "a.gif") == 8 and times == [i / 4 for i in range(8)]
+    view.time = 0
+    view.recorder.record_path(view.turntable(2), tmp_path / "f_%d.png", fps=16, frames=2, samples=1, on_frame=note)
+    assert times[8:] == [0, 1 / 16]
+
+
 def test_time_makes_even_steps_while_recording(view, tmp_path):
     box = view.scene.get("box")
     assert view.time == 0 and view.delta_time == 0 and view.fixed_step is None

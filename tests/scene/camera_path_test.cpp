@@ -253,6 +253,18 @@ TEST(CameraPath, FrameTimesCoverThePath) {
     EXPECT_THROW(closed.times(0), ArgumentError);
 }
 
+// Three keys a second apart: two seconds, and three around. The last frame of the open path is at its end.
+TEST(CameraPath, FramesLastAsLongAsThePath) {
+    const Keys keys = random_keys(3, 2, true);
+    const CameraPath open(keys), closed(keys, {PathMode::smooth, PathEase::none, true});
+    EXPECT_EQ(open.frame_rate(21), 10);
+    EXPECT_EQ(closed.frame_rate(30), 10);
+    EXPECT_EQ(open.times(21)[1], 0.1);
+    EXPECT_EQ(closed.times(30)[1], 0.1);
+    EXPECT_EQ(open.frame_rate(1), 0.5);
+    EXPECT_THROW(open.frame_rate(0), ArgumentError);
+}
+
 std::string error_of(const Keys& keys, const CameraPathOptions& options = {}) {
     try {
         CameraPath(keys, options).pose(0);

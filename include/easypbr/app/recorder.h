@@ -16,11 +16,13 @@ namespace easypbr::app {
 class Session;
 
 struct RecordingOptions {
-    double fps = 30;
+    std::optional<double> fps = std::nullopt;   ///< frames per second; none: 30, see record_path()
     std::optional<Vec2i> size = std::nullopt;   ///< none: the settings'
     std::optional<int> samples = std::nullopt;  ///< none: the settings'
     std::string codec = {};  ///< FFmpeg's name of an encoder; empty: the usual one of the file's kind
     bool deep = false;       ///< 16 bits: PNG only
+
+    double rate() const { return fps.value_or(30); }
 };
 
 /// Frames are read back while the next ones are drawn, and encoded and written by threads beside it, in the
@@ -70,11 +72,11 @@ class Recorder {
 
     /// Called before a frame is drawn with its number, how many there are, and its time on the path.
     using BeforeFrame = std::function<void(int frame, int count, double time_s)>;
-    /// Records the camera on its way: path.frame_times(fps), or `frames` times evenly over the path. The
-    /// camera is afterwards what it was. The first frame's motion is that of a closed path, and of objects
-    /// that before_frame() moves; an open path begins at rest. Progress with the time left is reported
-    /// (report_progress()). Returns the number of frames. Throws as start() and add_frame() do; what was
-    /// recorded until then is finished.
+    /// Records the camera on its way: path.frame_times(fps), or `frames` times evenly over the path, which
+    /// last as long as it where no rate is given. The camera is afterwards what it was. The first frame's
+    /// motion is that of a closed path, and of objects that before_frame() moves; an open path begins at
+    /// rest. Progress with the time left is reported (report_progress()). Returns the number of frames.
+    /// Throws as start() and add_frame() do; what was recorded until then is finished.
     int record_path(const CameraPath& path, const std::filesystem::path& file,
                     const RecordingOptions& options = {}, std::optional<int> frames = std::nullopt,
                     const BeforeFrame& before_frame = {});

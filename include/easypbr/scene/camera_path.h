@@ -86,12 +86,16 @@ class CameraPath {
     /// Times of a video's frames: round(duration * fps) of a closed path, one more of an open one, so that
     /// both ends are in it. Throws ArgumentError unless fps > 0.
     std::vector<double> frame_times(double fps) const;
+    /// Frames per second with which the frames at times(count) show the path in its duration.
+    double frame_rate(int count) const;
 
   private:
     CameraPath() = default;
     /// Time along the path without easing, within [0, duration].
     double eased(double time_s) const;
     void build_splines();
+    /// Between the frames at times(count). Throws ArgumentError for less than one frame.
+    int steps(int count) const;
     Eigen::Isometry3d linear_pose(double time) const;
 
     std::vector<CameraKey> keys_;

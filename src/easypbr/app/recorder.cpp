@@ -63,7 +63,7 @@ void Recorder::start(const fs::path& path, const RecordingOptions& options) {
     recording->ring = std::make_unique<PictureRing>(
         session_, [to = recording.get()](Image drawn, int times) { to->take(std::move(drawn), times); });
     recording->step_before = clock_.fixed_step();
-    clock_.set_fixed_step(1 / options.fps);
+    clock_.set_fixed_step(1 / options.rate());
     recording_ = std::move(recording);
 }
 
@@ -152,12 +152,14 @@ int Recorder::stop() {
 
 int Recorder::record_path(const CameraPath& path, const fs::path& file, const RecordingOptions& options,
                           std::optional<int> frames, const BeforeFrame& before_frame) {
-    const std::vector<double> times = frames ? path.times(*frames) : path.frame_times(options.fps);
+    const std::vector<double> times = frames ? path.times(*frames) : path.frame_times(options.rate());
+    RecordingOptions timed = options;
+    if (frames && !options.fps) timed.fps = path.frame_rate(*frames);
     const Camera like = session_.resolve(options.size).camera;
     // A closed path was on its way before the first frame; on an open one the camera rests until then.
-    const double step = times.size() > 1 ? times[1] - times[0] : 1 / options.fps;
+    const double step = times.size() > 1 ? times[1] - times[0] : 1 / timed.rate();
     return record_frames(
-        times, times[0] - step, [&](double time_s) { return path.camera(time_s, like); }, file, options,
+        times, times[0] - step, [&](double time_s) { return path.camera(time_s, like); }, file, timed,
         before_frame);
 }
 

@@ -138,9 +138,9 @@ Encoding encoding_for_recording(const fs::path& path, bool deep) {
 }
 
 void check_recording(const fs::path& path, const Settings& settings, const RecordingOptions& options) {
-    if (!(options.fps > 0) || !std::isfinite(options.fps))
+    if (!(options.rate() > 0) || !std::isfinite(options.rate()))
         throw ArgumentError(fmt::format("cannot record {}: expected above 0 frames per second, got {}",
-                                        path.string(), options.fps));
+                                        path.string(), options.rate()));
     const bool transparent = settings.background.mode == BackgroundMode::transparent;
     if (io::is_video(path)) {
         if (transparent)
@@ -171,7 +171,7 @@ void check_recording(const fs::path& path, const Settings& settings, const Recor
 std::unique_ptr<FrameWriter> make_frame_writer(const fs::path& path, const Vec2i& size,
                                                const RecordingOptions& options) {
     if (io::is_video(path))
-        return std::make_unique<VideoFrames>(io::open_video(path, {size, options.fps, options.codec}));
+        return std::make_unique<VideoFrames>(io::open_video(path, {size, options.rate(), options.codec}));
     const fs::path pattern = numbered(path);
     std::error_code failed;
     const fs::path folder = pattern.parent_path();

@@ -86,7 +86,7 @@ Look look_of(const RenderOptions& options, const std::vector<std::string>& files
 
 app::RecordingOptions recording_of(const RenderOptions& options) {
     app::RecordingOptions recording;
-    recording.fps = options.fps.value_or(recording.fps);
+    recording.fps = options.fps.value_or(recording.rate());
     recording.codec = options.codec;
     recording.deep = options.bit_depth == 16;
     return recording;
@@ -245,8 +245,8 @@ class RenderJob {
         if (!options_.turntable && !camera_path_) return record_animation(picture, recorder, recording);
         const CameraPath path =
             camera_path_ ? *camera_path_
-                         : app::turntable(session_, options_.turntable.value_or(1) / recording.fps);
-        const auto play = [&](int frame, int, double) { animate_next(frame / recording.fps); };
+                         : app::turntable(session_, options_.turntable.value_or(1) / recording.rate());
+        const auto play = [&](int frame, int, double) { animate_next(frame / recording.rate()); };
         animate_frame_before();
         recorder.record_path(path, picture.output, recording, options_.turntable, play);
     }
@@ -256,8 +256,8 @@ class RenderJob {
     void record_animation(const Picture& picture, app::Recorder& recorder,
                           const app::RecordingOptions& recording) {
         std::vector<double> times(
-            size_t(std::max(1.0, std::round(animation_->duration_s() * recording.fps))));
-        for (size_t i = 0; i < times.size(); ++i) times[i] = double(i) / recording.fps;
+            size_t(std::max(1.0, std::round(animation_->duration_s() * recording.rate()))));
+        for (size_t i = 0; i < times.size(); ++i) times[i] = double(i) / recording.rate();
         const Camera rest = resting_camera(times.back());
         const auto camera = [&](double time_s) { return animation_->camera(time_of(time_s)).value_or(rest); };
         animate_frame_before();
@@ -293,7 +293,7 @@ class RenderJob {
         animate_next(0);
     }
 
-    double frame_s() const { return 1 / recording_of(options_).fps; }
+    double frame_s() const { return 1 / recording_of(options_).rate(); }
     void animate_frame_before() { animate(-frame_s()); }
     /// The next frame, after that of the time before. What the animation jumps by is no motion.
     void animate_next(double time_s) {

@@ -131,7 +131,9 @@ void bind_times(nb::class_<CameraPath>& path) {
              "Times of the frames of a video: round(duration * fps) for a closed path, one more for an open "
              "one.")
         .def("times", &CameraPath::times, nb::arg("count"),
-             "That many evenly spaced times; of a closed path without the end.");
+             "That many evenly spaced times; of a closed path without the end.")
+        .def("frame_rate", &CameraPath::frame_rate, nb::arg("count"),
+             "Frames per second with which the frames at times(count) show the path in its duration.");
 }
 
 }  // namespace

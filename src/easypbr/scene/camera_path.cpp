@@ -311,11 +311,19 @@ Camera CameraPath::camera(double time_s, Camera like) const {
     return like;
 }
 
-std::vector<double> CameraPath::times(int count) const {
+int CameraPath::steps(int count) const {
     if (count < 1)
         throw ArgumentError(fmt::format("camera path: expected at least one frame, got {}", count));
+    return options_.closed ? count : std::max(1, count - 1);
+}
+
+double CameraPath::frame_rate(int count) const {
+    return steps(count) / duration_s_;
+}
+
+std::vector<double> CameraPath::times(int count) const {
+    const int steps = this->steps(count);
     std::vector<double> times(size_t(count), 0.0);
-    const int steps = options_.closed ? count : std::max(1, count - 1);
     for (int i = 0; i < count; ++i) times[size_t(i)] = duration_s_ * i / steps;
     return times;
 }
