@@ -35,7 +35,7 @@ SHORT_NAMES = {
     "environment_rotation_deg": "environment.rotation_deg",
     "environment_intensity": "environment.intensity",
 }
-#: Settings that render() has an argument of its own for.
+#: Settings that render() has an argument of its own for, or that go together.
 _ARGUMENTS = {
     "image.size": "size=(800, 600)",
     "image.samples": "samples=8",
@@ -43,6 +43,7 @@ _ARGUMENTS = {
     "background.color": "background='#ffffff'",
     "background.mode": "background='transparent'",
     "background.image": "background='photo.jpg'",
+    "style.color_min": "color_min=0, color_max=1",
     "camera.position": "camera={'position': (3, 2, 5), 'target': (0, 0, 0)}",
     "camera.pose": "camera=T_world_cam",
     "path.enabled": "mode='path'",
@@ -224,4 +225,13 @@ def keyword_of(setting: str) -> str:
     short = [keyword for keyword, full in SHORT_NAMES.items() if full == setting]
     last = setting.rsplit(".")[-1]
     is_unique = sum(field.name.rsplit(".")[-1] == last for field in _easypbr.fields()) == 1 and not _easypbr.synonym(last)
-    return f"{short[0]}=..." if short else f"{last}=..." if is_unique else f"settings={{'{setting}': ...}}"
+    keyword = f"{short[0]}=..." if short else f"{last}=..." if is_unique else f"settings={{'{setting}': ...}}"
+    return keyword + _choices_of(setting)
+
+
+def _choices_of(setting: str) -> str:
+    """", one of 'hard', 'pcf', 'soft'"; empty for numbers, colours and texts."""
+    field = _easypbr.field(setting)
+    if field.type == "boolean":
+        return ", True or False"
+    return f", one of {', '.join(map(repr, field.choices))}" if field.type == "choice" else ""

@@ -38,6 +38,14 @@ def cone():
     ({"window_size": (3, 4)}, TypeError, "it is called size="),
     ({"spp": 4}, TypeError, "it is called samples="),
     ({"soft_shadows": True}, TypeError, r"it is called settings=\{'shadows.mode': ...\}"),
+    ({"ground": False}, TypeError, r"it is called settings=\{'ground.mode': ...\}, one of 'none', 'shadow', 'plane'"),
+    ({"shadows": False}, TypeError, r"it is called settings=\{'shadows.enabled': ...\}, True or False"),
+    ({"transparent": True}, TypeError, "it is called background='transparent'"),
+    ({"material": "red"}, TypeError, r"a group of settings: 'material\."),
+    ({"clim": (0, 1)}, TypeError, "it is called color_min=0, color_max=1"),
+    ({"flip_scalars": True}, TypeError, "the colour map's name with _r: colormap='viridis_r'"),
+    ({"scalar_bar_args": {}}, TypeError, "give colorbar=True, title='height'"),
+    ({"style": "wireframe"}, TypeError, "give show_wireframe=True"),
     ({"rougness": 1}, TypeError, "did you mean 'material.roughness'"),
     ({"samples": "4"}, ValueError, "samples: expected a whole number from 1 to 65536, got '4'"),
     ({"samples": 2.5}, ValueError, "samples: expected a whole number from 1 to 65536, got 2.5"),
@@ -62,6 +70,18 @@ def test_every_synonym_leads_to_a_setting_or_to_advice():
             with pytest.raises(TypeError, match="it is called"):
                 render(np.zeros((1, 3)), **{synonym.word: 1})
     assert _easypbr.synonym("nothing") is None
+
+
+def test_pyvista_s_words_are_known():
+    """The parameters of its Plotter.add_mesh() and plot(), but for those that are EasyPBR's too or belong to its own plotter."""
+    words = """style scalars clim show_edges edge_color edge_opacity flip_scalars lighting n_colors interpolate_before_map cmap
+    reset_camera scalar_bar_args show_scalar_bar name texture render_points_as_spheres render_lines_as_tubes smooth_shading
+    split_sharp_edges ambient diffuse specular_power nan_opacity culling rgb categories silhouette use_transparency below_color
+    above_color annotations pickable preference pbr user_matrix component copy_mesh backface_params show_vertices
+    color_missing_with_nan interpolation vertex_color off_screen interactive cpos window_size show_bounds show_axes show_grid notebook
+    jupyter_backend screenshot return_img eye_dome_lighting volume parallel_projection return_cpos anti_aliasing zoom ssao
+    hidden_line_removal transparent_background theme line_smoothing""".split()
+    assert [word for word in words if _easypbr.synonym(word) is None] == []
 
 
 def test_words_of_images_are_not_taken_for_other_settings(cone):

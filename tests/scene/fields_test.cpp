@@ -241,6 +241,15 @@ TEST(Fields, SuggestNames) {
               "there is no setting 'render.azimuth_deg' (did you mean 'camera.azimuth_deg'?)");
     EXPECT_EQ(message_of("margin", "1"), "there is no setting 'margin' (did you mean 'camera.margin'?)");
     EXPECT_EQ(message_of("qqqqqqqq", "1"), "there is no setting 'qqqqqqqq'");
+    EXPECT_EQ(message_of("ground", "false"), "there is no setting 'ground' (it is called 'ground.mode')");
+    EXPECT_EQ(message_of("material", "red"),
+              "there is no setting 'material' (a group of settings: 'material.color', 'material.metallic', "
+              "'material.roughness', ...)");
+    EXPECT_EQ(message_of("limits", "1"),
+              "there is no setting 'limits' (a group of settings: 'limits.memory')");
+    EXPECT_EQ(message_of("tonemap", "aces"),
+              "there is no setting 'tonemap' (a group of settings: 'tonemap.operator', 'tonemap.exposure', "
+              "'tonemap.exposure_compensation')");
 }
 
 TEST(Fields, KeepLatchedValuesAutomatic) {

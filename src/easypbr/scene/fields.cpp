@@ -30,11 +30,23 @@ std::string names_ending_in(std::string_view last) {
     return fmt::format("{}", fmt::join(names, " or "));
 }
 
+/// " (a group of settings: 'rays.enabled', ...)"; empty: it is none.
+std::string group_hint(std::string_view name) {
+    const std::string prefix = std::string(name) + ".";
+    std::string members;
+    size_t count = 0;
+    for (const Field& field : fields())
+        if (field.name.starts_with(prefix) && ++count <= 3)
+            members += (members.empty() ? "'" : ", '") + field.name + "'";
+    return count == 0 ? "" : fmt::format(" (a group of settings: {}{})", members, count > 3 ? ", ..." : "");
+}
+
 /// Names that begin with what was written, then names that are nearly it, then names whose last part nearly
 /// is.
 std::string hint_for(std::string_view wrong) {
     if (const Synonym* meant = synonym(last_part(wrong)); meant && !meant->setting.empty())
         return fmt::format(" (it is called '{}')", meant->setting);
+    if (const std::string group = group_hint(wrong); !group.empty()) return group;
     std::vector<std::string> names, last_parts;
     for (const Field& field : fields()) {
         if (wrong.size() >= 4 && field.name.starts_with(wrong) && wrong.find('.') != wrong.npos)
