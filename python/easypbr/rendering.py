@@ -125,9 +125,9 @@ def render(
 
     Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and
     `samples` 8 by default. `out` writes the image to a file too. `environment`: environment map, a path, an array or
-    an Environment. `background`: a colour, an image file, "environment", "blur" or "transparent". `camera`: "front", "back",
-    "left", "right", "top", "bottom", "iso", the name of a camera of the file, a Camera, a dict of settings.camera, a 4 x 4
-    camera-to-world matrix with OpenGL axes, or (position, target, up). Points without a finite position are left out with a
+    an Environment. `background`: a colour, an image (a file or an array), "environment", "blur" or "transparent". `camera`:
+    "front", "back", "left", "right", "top", "bottom", "iso", the name of a camera of the file, a Camera, a dict of
+    settings.camera, a 4 x 4 camera-to-world matrix with OpenGL axes, or (position, target, up). Points without a finite position are left out with a
     warning, or raise if `strict`. Values that PyVista and VTK colour by get a colour bar. Other keywords are settings by the
     last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of settings. `preset`: "dark", "flat",
     "paper", "studio" or a file of settings that all others win over. `mode`: "raster" lights the image as frames that move are,
@@ -178,9 +178,8 @@ def _set_background(view: Viewer, background: Any) -> None:
     mode = {"env": "environment"}.get(background, background) if isinstance(background, str) else None
     if mode in _easypbr.field("background.mode").choices and mode not in ("color", "image"):
         view.settings["background.mode"] = mode
-    elif isinstance(background, os.PathLike) or (mode and os.path.splitext(mode)[1]):
-        view.settings["background.image"] = background
-        view.settings["background.mode"] = "image"
+    elif isinstance(background, os.PathLike) or (mode and os.path.splitext(mode)[1]) or np.ndim(background) >= 2:
+        view.load_background_image(background)
     else:
         view.settings["background.color"] = background
 

@@ -112,6 +112,14 @@ class Viewer(Sharing):
             self.scene.environment = source
             self._handle.set_setting("environment.file", "")
 
+    def load_background_image(self, source: Any) -> None:
+        """Shows an image behind everything until another background is set: a path, or an array, height x width x (1 to 4),
+        of uint8 or uint16 (sRGB), or of floats (linear, premultiplied by alpha). Files of settings do not hold arrays."""
+        if isinstance(source, (str, os.PathLike)):
+            self._settings.update({"background.image": os.fspath(source), "background.mode": "image"})
+        else:
+            self._handle.set_background_image(source)
+
     @property
     def camera(self) -> "_easypbr.Camera":
         """A copy of the camera of the next image. Assigning pins it: a Camera, "front", "back", "left", "right", "top",

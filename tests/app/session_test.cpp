@@ -270,6 +270,34 @@ TEST_F(SessionFiles, ImageBackgroundCoversThePicture) {
     EXPECT_EQ(corner(), (std::vector<int>{255, 0, 0, 255}));
 }
 
+// An image in memory stays until the settings name another one; a mode that shows none leaves it.
+TEST_F(SessionFiles, ImagesInMemoryAreBackgrounds) {
+    io::save_image(to_u8(constant_image(Vec3(1, 0, 0))), folder_ / "red.png");
+    Session session = small_session();
+    BackgroundSettings& background = session.settings().background;
+    session.settings().ground.mode = GroundMode::none;
+    background.color = Vec3(0, 0, 1);
+    background.image = "none.png";
+    const auto corner = [&] {
+        const Image image = session.render();
+        const uint8_t* p = image.at<uint8_t>(0, 0);
+        return std::vector<int>(p, p + 4);
+    };
+    EXPECT_THROW(session.set_background(Image()), ArgumentError);
+    EXPECT_EQ(background.image, "none.png");
+    session.set_background(to_u8(constant_image(Vec3(0, 1, 0))));
+    EXPECT_EQ(background.image, "");
+    EXPECT_EQ(corner(), (std::vector<int>{0, 255, 0, 255}));
+    background.mode = BackgroundMode::color;
+    EXPECT_EQ(corner(), (std::vector<int>{0, 0, 255, 255}));
+    background.mode = BackgroundMode::image;
+    EXPECT_EQ(corner(), (std::vector<int>{0, 255, 0, 255}));
+    background.image = (folder_ / "red.png").string();
+    EXPECT_EQ(corner(), (std::vector<int>{255, 0, 0, 255}));
+    background.image.clear();
+    EXPECT_THROW(session.render(), ArgumentError);
+}
+
 // A picture of one colour behind everything, as its corner shows it, in all encodings and with several
 // samples.
 TEST_F(SessionFiles, ImageBackgroundKeepsBitsRadianceAndAlpha) {

@@ -87,6 +87,11 @@ class Viewer {
 
     /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
     void load_environment_map(const std::filesystem::path& path);
+    /// Shows an image behind everything: settings().background.mode is image, and background.image names no
+    /// file. It is there until that names one, or another image is set; a file of settings does not hold it.
+    /// u8 and u16 are sRGB with straight alpha, f32 is linear and premultiplied by alpha. Throws
+    /// ArgumentError when it is empty.
+    void set_background_image(Image image);
 
     /// Draws the scene and returns RGBA, row 0 on top. What was automatic is latched in settings(). Throws
     /// ArgumentError (among others when the picture has more than 2^30 pixels), FileError (images that the

@@ -78,6 +78,22 @@ std::vector<fs::path> layers_to_files(Session& session, const fs::path& path,
     return written;
 }
 
+namespace {
+
+/// What is drawn and has no file that the settings name.
+void warn_of_data(const Session& session, const fs::path& path) {
+    const Settings& settings = session.settings();
+    const auto warn = [&](const char* what, const char* setting) {
+        log_warning(fmt::format("{} does not hold the {}: {} names no file", path.string(), what, setting));
+    };
+    if (settings.background.mode == BackgroundMode::image && settings.background.image.empty())
+        warn("background image", "background.image");
+    if (settings.environment.file.empty() && !session.scene().environment().empty())
+        warn("environment map", "environment.file");
+}
+
+}  // namespace
+
 void save_settings(const Session& session, const std::vector<fs::path>& files, const fs::path& path) {
     io::SettingsFile file;
     file.settings = session.settings();
@@ -91,6 +107,7 @@ void save_settings(const Session& session, const std::vector<fs::path>& files, c
         file.files[named] = io::hash_file(named);
     });
     io::save_settings(file, path);
+    warn_of_data(session, path);
 }
 
 namespace {

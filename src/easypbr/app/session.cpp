@@ -405,6 +405,12 @@ void Session::load_environment(const std::filesystem::path& path) {
     settings_->environment.file = path.string();
 }
 
+void Session::set_background(Image image) {
+    files_.set_background(std::move(image));
+    settings_->background.image.clear();
+    settings_->background.mode = BackgroundMode::image;
+}
+
 std::vector<std::string> Session::object_names() const {
     std::vector<std::string> names;
     for (const auto& object : scene_.snapshot().objects) names.push_back(object.name);

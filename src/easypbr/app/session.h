@@ -172,6 +172,9 @@ class Session {
     /// Lights the scene with a file: settings().environment.file, read at once. Throws FileError,
     /// FormatError.
     void load_environment(const std::filesystem::path& path);
+    /// Shows an image behind everything: settings().background.mode is image, and background.image names no
+    /// file. Throws ArgumentError when it is empty.
+    void set_background(Image image);
 
     /// Pins the camera to a pose: settings().camera follows. A near plane that was inferred is inferred anew.
     void set_camera(const Camera& camera);

@@ -1,6 +1,7 @@
 #include "easypbr/app/settings_files.h"
 
 #include <set>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -39,8 +40,9 @@ void SettingsFiles::load(const Settings& settings) {
     std::set<std::string> paths;
     for (const MaterialTexture& row : replaceable_textures()) paths.insert(settings.material.*row.setting);
     const bool has_background = settings.background.mode == BackgroundMode::image;
+    if (!settings.background.image.empty()) background_.reset();
     if (has_background) {
-        if (settings.background.image.empty())
+        if (settings.background.image.empty() && !background_)
             throw ArgumentError("background.mode is image, but background.image names no file");
         paths.insert(settings.background.image);
     }
@@ -52,7 +54,8 @@ void SettingsFiles::load(const Settings& settings) {
         texture.path = settings.material.*row.setting;
         texture.image = image_files_.get(texture.path);
     }
-    if (has_background) images_.background = image_files_.get(settings.background.image);
+    if (has_background)
+        images_.background = background_ ? background_ : image_files_.get(settings.background.image);
     if (settings.environment.file != environment_file_) {
         const std::filesystem::path file = settings.environment.file;
         environment_ = file.empty() ? Environment() : Environment(file);
@@ -72,6 +75,11 @@ void SettingsFiles::load_shaders(const Settings& settings, const SceneSnapshot& 
 void SettingsFiles::load_environment(const std::filesystem::path& path) {
     environment_ = Environment(path);
     environment_file_ = path.string();
+}
+
+void SettingsFiles::set_background(Image image) {
+    if (image.empty()) throw ArgumentError("background image: expected pixels, got an empty image");
+    background_ = std::make_shared<const Image>(std::move(image));
 }
 
 }  // namespace easypbr::app

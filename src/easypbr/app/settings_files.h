@@ -51,12 +51,14 @@ class ShaderTexts {
 class SettingsFiles {
   public:
     /// Images that the settings name, and the environment. Throws FileError, FormatError; ArgumentError when
-    /// the background is an image and none is named.
+    /// the background is an image, and none is named or given.
     void load(const Settings& settings);
     /// The shaders of settings and materials, after load(). Throws FileError.
     void load_shaders(const Settings& settings, const SceneSnapshot& scene);
     /// Reads the environment at once, even if it has been read before.
     void load_environment(const std::filesystem::path& path);
+    /// The background image where the settings name none; until they name one.
+    void set_background(Image image);
 
     /// What was loaded last.
     const render::SettingsImages& images() const { return images_; }
@@ -69,6 +71,7 @@ class SettingsFiles {
     render::SettingsImages images_;
     std::string environment_file_;
     Environment environment_;
+    std::shared_ptr<const Image> background_;  ///< given as it is
 };
 
 }  // namespace easypbr::app

@@ -377,6 +377,13 @@ void bind_viewer(nb::module_& module) {
                 self.run([&](Viewer& viewer) { viewer.load_environment_map(path); });
             },
             nb::arg("path"))
+        .def(
+            "set_background_image",
+            [](SharedViewer& self, const ArrayLike& array) {
+                Image image = to_image(array, "background image");
+                self.run([&](Viewer& viewer) { viewer.set_background_image(std::move(image)); });
+            },
+            nb::arg("image"))
         .def_prop_rw(
             "camera",
             [](SharedViewer& self) { return self.run([](Viewer& viewer) { return viewer.camera(); }); },

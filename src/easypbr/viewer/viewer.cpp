@@ -412,4 +412,8 @@ void Viewer::load_environment_map(const std::filesystem::path& path) {
     parts_->session.load_environment(path);
 }
 
+void Viewer::set_background_image(Image image) {
+    parts_->session.set_background(std::move(image));
+}
+
 }  // namespace easypbr

@@ -330,7 +330,8 @@ BackgroundImage* Renderer::background_image(const ResolvedSettings& resolved, co
     const BackgroundSettings& background = resolved.settings.background;
     if (background.mode != BackgroundMode::image || !images.background) return nullptr;
     if (!background_ || background_->image() != images.background)
-        background_ = std::make_unique<BackgroundImage>(images.background, background.image);
+        background_ = std::make_unique<BackgroundImage>(
+            images.background, background.image.empty() ? "array" : background.image);
     return background_.get();
 }
 
