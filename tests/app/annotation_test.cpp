@@ -98,16 +98,28 @@ TEST(Ticks, AreRound) {
     EXPECT_EQ(texts(-1, 2, 5), (Texts{"\u22121", "0", "1", "2"}));
     EXPECT_EQ(texts(312.4, 347.1, 4), (Texts{"320", "330", "340"}));
     EXPECT_EQ(texts(0, 5e6, 6), (Texts{"0", "1e6", "2e6", "3e6", "4e6", "5e6"}));
-    EXPECT_EQ(texts(0, 2e-5, 5), (Texts{"0", "0.5e-5", "1.0e-5", "1.5e-5", "2.0e-5"}));
+    EXPECT_EQ(texts(0, 2e-5, 5), (Texts{"0", "5.0e-6", "1.0e-5", "1.5e-5", "2.0e-5"}));
     EXPECT_EQ(texts(-2e6, 1e6, 4), (Texts{"\u22122e6", "\u22121e6", "0", "1e6"}));
     EXPECT_EQ(texts(1000.0001, 1000.0004, 4), (Texts{"1000.0001", "1000.0002", "1000.0003", "1000.0004"}));
     // Ends as float32 holds them: 1e-4 and 1e38 are less there.
-    EXPECT_EQ(texts(0, double(1e-4f), 3), (Texts{"0", "0.5e-4", "1.0e-4"}));
+    EXPECT_EQ(texts(0, double(1e-4f), 3), (Texts{"0", "5e-5", "1e-4"}));
     EXPECT_EQ(texts(0, double(1e38f), 2), (Texts{"0", "1e38"}));
     EXPECT_EQ(texts(0.3, 0.4, 1).size(), 1u);
     // Of the distance 5 there is none, of the next one, 2, the last ones that may be.
     EXPECT_EQ(texts(0.5, 4.52, 2), (Texts{"2", "4"}));
     EXPECT_EQ(texts(0.5, 4.52, 1), (Texts{"4"}));
+}
+
+// A mantissa from 1 to 10, of as many digits as the tick that needs the most: 1.5e-6 needs two, 1e7 one.
+TEST(Ticks, HaveOneFormat) {
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(texts(0, 1e7, 3), (Texts{"0", "5e6", "1e7"}));
+    EXPECT_EQ(texts(-1e7, 1e7, 5), (Texts{"\u22121e7", "\u22125e6", "0", "5e6", "1e7"}));
+    EXPECT_EQ(texts(1e-6, 3e-6, 5), (Texts{"1.0e-6", "1.5e-6", "2.0e-6", "2.5e-6", "3.0e-6"}));
+    EXPECT_EQ(texts(8e6, 1.2e7, 5), (Texts{"8.0e6", "9.0e6", "1.0e7", "1.1e7", "1.2e7"}));
+    EXPECT_EQ(texts(12345678, 12345682, 3), (Texts{"1.2345678e7", "1.2345680e7", "1.2345682e7"}));
+    EXPECT_EQ(texts(-0.3, 0.7, 2), (Texts{"0.0", "0.5"}));
+    EXPECT_EQ(texts(-1e-9, 1e-9, 3), (Texts{"\u22121e-9", "0", "1e-9"}));
 }
 
 TEST(Ticks, AreInTheRangeAndNotTooMany) {

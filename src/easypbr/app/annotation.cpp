@@ -149,19 +149,50 @@ int digits_of(double step) {
     return std::max(0, int(-std::floor(std::log10(step) + 1e-9)));
 }
 
-/// All ticks of a bar have the same power of ten: "0.5e6", "1.0e6".
-std::string tick_text(double value, double step, double magnitude) {
-    if (value == 0 && (magnitude >= 1e6 || magnitude < 1e-3)) return "0";
-    std::string text;
-    if (magnitude >= 1e6 || magnitude < 1e-3) {
-        // Rounded to float32, 1e-4 is less than it by a part of up to 6e-8.
-        const double exponent = std::floor(std::log10(magnitude) + 1e-6), power = std::pow(10.0, exponent);
-        text = fmt::format("{:.{}f}e{}", value / power, digits_of(step / power), int(exponent));
-    } else {
-        text = fmt::format("{:.{}f}", value, digits_of(step));
-    }
+/// A number without the zeros at its end: 1.5e6 is "15" and 6.
+struct Decimal {
+    bool negative = false;
+    std::string digits;  ///< none: 0
+    int exponent = 0;    ///< of the first digit
+};
+
+/// So many steps, which are 1, 2 or 5 times a power of ten.
+Decimal decimal_of(double count, double step) {
+    const int power = int(std::floor(std::log10(step) + 1e-9));
+    const long long units = std::llround(count) * std::llround(step / std::pow(10.0, power));
+    Decimal decimal{units < 0, std::to_string(std::abs(units)), power};
+    decimal.exponent += int(decimal.digits.size()) - 1;
+    decimal.digits.erase(decimal.digits.find_last_not_of('0') + 1);
+    return decimal;
+}
+
+/// With so many digits in all: "5e6", "5.0e6".
+std::string scientific_text(const Decimal& decimal, size_t digits) {
+    if (decimal.digits.empty()) return "0";
+    std::string text = decimal.digits + std::string(digits - decimal.digits.size(), '0');
+    if (digits > 1) text.insert(1, ".");
+    return fmt::format("{}{}e{}", decimal.negative ? "\u2212" : "", text, decimal.exponent);
+}
+
+/// With so many digits after the point.
+std::string fixed_text(double value, int digits) {
+    std::string text = fmt::format("{:.{}f}", value, digits);
     if (text.starts_with('-')) text.replace(0, 1, "\u2212");
     return text;
+}
+
+/// All ticks have one format: as many digits after the point as the tick that needs the most.
+std::vector<Tick> written(const std::vector<double>& counts, double step, double magnitude) {
+    const bool scientific = magnitude >= 1e6 || magnitude < 1e-3;
+    size_t digits = 1;
+    for (const double count : counts) digits = std::max(digits, decimal_of(count, step).digits.size());
+    std::vector<Tick> ticks;
+    for (const double count : counts) {
+        const double value = count == 0 ? 0 : count * step;  // no negative zero
+        ticks.push_back({value, scientific ? scientific_text(decimal_of(count, step), digits)
+                                           : fixed_text(value, digits_of(step))});
+    }
+    return ticks;
 }
 
 }  // namespace
@@ -175,10 +206,9 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
     // None: the next finer distance.
     while (last() < first()) step = round_step(step * 0.4);
     const double magnitude = std::max(std::abs(min), std::abs(max));
-    std::vector<Tick> ticks;
-    for (double k = std::max(first(), last() - most + 1); k <= last(); ++k)
-        ticks.push_back({k * step, tick_text(k == 0 ? 0 : k * step, step, magnitude)});  // no negative zero
-    return ticks;
+    std::vector<double> counts;
+    for (double k = std::max(first(), last() - most + 1); k <= last(); ++k) counts.push_back(k);
+    return written(counts, step, magnitude);
 }
 
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {

@@ -49,7 +49,7 @@ void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings
 
 struct Tick {
     double value = 0;
-    std::string text;  ///< with as many digits as the distance to the next one needs
+    std::string text;  ///< all of a bar in one format, with as many digits as tell them apart
 };
 /// Values from `min` to `max` (larger) at a round distance: 1, 2 or 5 times a power of ten, at least
 /// one, at most `most` of them.
