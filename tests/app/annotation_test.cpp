@@ -419,6 +419,32 @@ TEST(Annotation, NamesWhatOccurs) {
     EXPECT_TRUE(annotation_of(scene, settings).empty());
 }
 
+TEST(Annotation, BarsOfTheSameTitleNameTheirObjects) {
+    const auto mesh_to = [](float largest) {
+        MeshData mesh;
+        mesh.V = Array3f(Array3f::Dense::Zero(2, 3));
+        mesh.scalars = {{"error", Array1f(Array1f::Dense{{0.0f}, {largest}})}};
+        return std::make_shared<const MeshData>(mesh);
+    };
+    SceneSnapshot scene;
+    const auto titles = [&] {
+        InferredSettings settings;
+        settings.camera.up = "+y";
+        settings.annotation.colorbar = true;
+        std::vector<std::string> result;
+        for (const ColorBar& bar : annotation_of(scene, settings).bars) result.push_back(bar.title);
+        return result;
+    };
+    using Titles = std::vector<std::string>;
+    scene.objects.push_back({"ours", mesh_to(1), Eigen::Affine3d::Identity()});
+    scene.objects.push_back({"again", mesh_to(1), Eigen::Affine3d::Identity()});
+    EXPECT_EQ(titles(), (Titles{"error"})) << "one bar for equal colours of equal values";
+    scene.objects.push_back({"theirs", mesh_to(10), Eigen::Affine3d::Identity()});
+    EXPECT_EQ(titles(), (Titles{"error (ours + 1 more)", "error (theirs)"}));
+    scene.objects.erase(scene.objects.begin() + 1);
+    EXPECT_EQ(titles(), (Titles{"error (ours)", "error (theirs)"}));
+}
+
 TEST(Annotation, InfiniteValuesGoOnBeyondTheBar) {
     constexpr float infinite = std::numeric_limits<float>::infinity();
     InferredSettings settings;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "easypbr/core/interrupt.h"
@@ -74,7 +75,7 @@ class Collector {
         for (const SceneSnapshot::Object& object : scene.objects) {
             const DrawStyle style = resolve_style(*object.mesh, settings.style);
             if (!style.visible || object.mesh->V.empty()) continue;
-            add(*object.mesh, plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up));
+            add(object, plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up));
         }
     }
 
@@ -85,14 +86,34 @@ class Collector {
         return result;
     }
 
-    const std::vector<ColorBar>& bars() const { return bars_; }
+    std::vector<ColorBar> bars() const {
+        std::map<std::string, int> uses;
+        for (const Shared& shared : bars_) ++uses[shared.bar.title];
+        std::vector<ColorBar> result;
+        for (const Shared& shared : bars_) {
+            result.push_back(shared.bar);
+            if (uses[shared.bar.title] > 1) result.back().title += shared.whose();
+        }
+        return result;
+    }
 
   private:
-    void add(const MeshData& mesh, const ColorPlan& plan) {
-        if (plan.by == ColorBy::label && settings_.annotation.legend) add_labels(mesh);
+    /// A bar of one object or several.
+    struct Shared {
+        ColorBar bar;
+        std::string first;  ///< the first object's name
+        int others = 0;
+
+        std::string whose() const {
+            return others ? fmt::format(" ({} + {} more)", first, others) : fmt::format(" ({})", first);
+        }
+    };
+
+    void add(const SceneSnapshot::Object& object, const ColorPlan& plan) {
+        if (plan.by == ColorBy::label && settings_.annotation.legend) add_labels(*object.mesh);
         const bool has_values =
             plan.by == ColorBy::scalar || plan.by == ColorBy::height || plan.by == ColorBy::intensity;
-        if (has_values && settings_.annotation.colorbar) add_bar(mesh, plan);
+        if (has_values && settings_.annotation.colorbar) add_bar(object, plan);
     }
 
     void add_labels(const MeshData& mesh) {
@@ -102,29 +123,31 @@ class Collector {
         known->second.merge(labels_in(mesh.L));
     }
 
-    void add_bar(const MeshData& mesh, const ColorPlan& plan) {
-        const Array1f values = plan_values(mesh, plan);
+    void add_bar(const SceneSnapshot::Object& object, const ColorPlan& plan) {
+        const Array1f values = plan_values(*object.mesh, plan);
         ColorBar bar;
         bar.title = settings_.annotation.title.empty() ? title_of(plan) : settings_.annotation.title;
         bar.range = value_range(values, plan.min, plan.max, plan.colormap == Colormap::coolwarm);
         count_infinite(values, bar.range);
         std::ranges::transform(color_table(plan.colormap), bar.table.begin(), opaque);
         if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));
-        const auto same = [&](const ColorBar& other) {
-            return other.title == bar.title && other.range.min == bar.range.min &&
-                   other.range.max == bar.range.max && other.table == bar.table;
+        const auto same = [&](const Shared& other) {
+            return other.bar.title == bar.title && other.bar.range.min == bar.range.min &&
+                   other.bar.range.max == bar.range.max && other.bar.table == bar.table;
         };
         const auto known = std::ranges::find_if(bars_, same);
         if (known == bars_.end())
-            bars_.push_back(bar);
+            bars_.push_back({bar, object.name});
         else
             join(*known, bar);
     }
 
-    static void join(ColorBar& bar, const ColorBar& other) {
+    static void join(Shared& shared, const ColorBar& other) {
+        ColorBar& bar = shared.bar;
         bar.range.data_min = std::min(bar.range.data_min, other.range.data_min);
         bar.range.data_max = std::max(bar.range.data_max, other.range.data_max);
         if (!bar.nan_color) bar.nan_color = other.nan_color;
+        ++shared.others;
     }
 
     static std::string title_of(const ColorPlan& plan) {
@@ -133,7 +156,7 @@ class Collector {
 
     const InferredSettings& settings_;
     std::vector<std::pair<const LabelMap*, std::set<int32_t>>> labels_;  ///< in the order of the scene
-    std::vector<ColorBar> bars_;
+    std::vector<Shared> bars_;
 };
 
 /// The least of 1, 2, 5 times a power of ten that is at least this.

@@ -40,7 +40,8 @@ struct Annotation {
 };
 
 /// What the settings ask for of the visible objects: a legend for each label map, a colour bar for each name,
-/// range and colormap. Logs a warning when they ask for something that there is nothing for.
+/// range and colormap. Bars of the same title have the name of their object added. Logs a warning when they
+/// ask for something that there is nothing for.
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings);
 
 /// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height.
