@@ -24,18 +24,15 @@ const Rgb8 dark_ink{16, 16, 16}, light_ink{245, 245, 245}, dark_panel{0, 0, 0}, 
 /// How much of what is behind is covered.
 constexpr float panel_alpha = 0.75f;
 
-/// Writes on a canvas in one size and colour.
-class Pen {
+/// How much room text of one size takes.
+class TextMetrics {
   public:
-    Pen(Canvas& canvas, float em) : canvas_(canvas), em_(em), font_(em) {}
-
-    Canvas& canvas() { return canvas_; }
-    void set_ink(const Rgb8& ink) { ink_ = ink; }
-    const Rgb8& ink() const { return ink_; }
+    explicit TextMetrics(float em) : em_(em), font_(em) {}
 
     /// Whole pixels of a length in units of the text's size.
     int px(float length) const { return int(std::lround(length * em_)); }
     int width(const std::string& text) const { return int(std::ceil(font_.width(text))); }
+    const Font& font() const { return font_; }
 
     /// The text, or the longest beginning that is no wider than the room together with an ellipsis; nothing
     /// if not even that fits.
@@ -51,17 +48,29 @@ class Pen {
         return fits;
     }
 
+  private:
+    float em_;
+    Font font_;
+};
+
+/// Writes on a canvas in one size and colour.
+class Pen : public TextMetrics {
+  public:
+    Pen(Canvas& canvas, const TextMetrics& metrics) : TextMetrics(metrics), canvas_(canvas) {}
+
+    Canvas& canvas() { return canvas_; }
+    void set_ink(const Rgb8& ink) { ink_ = ink; }
+    const Rgb8& ink() const { return ink_; }
+
     /// Text whose capitals are centred on the row from `y` on, `height` pixels high.
     void write(const std::string& text, int x, int y, int height) {
-        const int baseline = y + int(std::lround((float(height) + font_.cap_height()) / 2));
-        font_.draw(text, float(x), baseline,
-                   [&](int px, int py, float coverage) { canvas_.blend(px, py, ink_, coverage); });
+        const int baseline = y + int(std::lround((float(height) + font().cap_height()) / 2));
+        font().draw(text, float(x), baseline,
+                    [&](int px, int py, float coverage) { canvas_.blend(px, py, ink_, coverage); });
     }
 
   private:
     Canvas& canvas_;
-    float em_;
-    Font font_;
     Rgb8 ink_{};
 };
 
@@ -71,11 +80,11 @@ struct Block {
     std::function<void(Pen&, int x, int y)> draw;
 };
 
-Block titled(Pen& pen, const std::string& text, int room_x, Block block) {
+Block titled(const TextMetrics& metrics, const std::string& text, int room_x, Block block) {
     if (text.empty()) return block;
-    const std::string title = pen.shortened(text, std::max(room_x, block.width));
-    const int row = pen.px(row_height);
-    return {std::max(block.width, pen.width(title)), block.height + row,
+    const std::string title = metrics.shortened(text, std::max(room_x, block.width));
+    const int row = metrics.px(row_height);
+    return {std::max(block.width, metrics.width(title)), block.height + row,
             [title, row, inner = block.draw](Pen& p, int x, int y) {
                 p.write(title, x, y, row);
                 inner(p, x, y + row);
@@ -86,17 +95,17 @@ Block titled(Pen& pen, const std::string& text, int room_x, Block block) {
 /// cannot fit no name is measured.
 class LegendLayout {
   public:
-    LegendLayout(Pen& pen, const Legend& legend, int room_x, int room_y)
-        : row_(pen.px(row_height)),
-          swatch_(pen.px(swatch_size)),
-          text_x_(swatch_ + pen.px(swatch_gap)),
-          column_gap_(pen.px(column_gap)) {
+    LegendLayout(const TextMetrics& metrics, const Legend& legend, int room_x, int room_y)
+        : row_(metrics.px(row_height)),
+          swatch_(metrics.px(swatch_size)),
+          text_x_(swatch_ + metrics.px(swatch_gap)),
+          column_gap_(metrics.px(column_gap)) {
         const int title = legend.title.empty() ? 0 : row_;
         const size_t most_rows = size_t(std::max(1, (room_y - title) / row_));
         const size_t most_columns = size_t(std::max(1, (room_x + column_gap_) / (text_x_ + column_gap_)));
         const size_t count = legend.entries.size();
         const size_t needed = std::max<size_t>(1, (count + most_rows - 1) / most_rows);
-        take(pen, legend, std::min(count, most_rows * most_columns), room_x - text_x_);
+        take(metrics, legend, std::min(count, most_rows * most_columns), room_x - text_x_);
         if (needed <= most_columns) {
             place((count + needed - 1) / needed);
             if (needed == 1 || width() <= room_x) return;
@@ -104,8 +113,8 @@ class LegendLayout {
         // They do not fit: the last row says so.
         for (size_t columns = std::min(needed - 1, most_columns);; --columns) {
             shown_.resize(columns * most_rows - 1);
-            rest_ = pen.shortened(fmt::format("+ {} more", count - shown_.size()), room_x);
-            rest_width_ = pen.width(rest_);
+            rest_ = metrics.shortened(fmt::format("+ {} more", count - shown_.size()), room_x);
+            rest_width_ = metrics.width(rest_);
             place(most_rows);
             if (columns == 1 || width() <= room_x) return;
         }
@@ -128,10 +137,10 @@ class LegendLayout {
         int width;  ///< of the name
     };
 
-    void take(const Pen& pen, const Legend& legend, size_t count, int room) {
+    void take(const TextMetrics& metrics, const Legend& legend, size_t count, int room) {
         for (const LegendEntry& entry : std::span(legend.entries).first(count)) {
-            const std::string name = pen.shortened(entry.name, room);
-            shown_.push_back({{name, entry.color}, pen.width(name)});
+            const std::string name = metrics.shortened(entry.name, room);
+            shown_.push_back({{name, entry.color}, metrics.width(name)});
         }
     }
 
@@ -155,10 +164,10 @@ class LegendLayout {
     std::vector<int> x_;
 };
 
-Block legend_block(Pen& pen, const Legend& legend, int room_x, int room_y) {
-    const LegendLayout layout(pen, legend, room_x, room_y);
+Block legend_block(const TextMetrics& metrics, const Legend& legend, int room_x, int room_y) {
+    const LegendLayout layout(metrics, legend, room_x, room_y);
     return titled(
-        pen, legend.title, room_x,
+        metrics, legend.title, room_x,
         {layout.width(), layout.height(), [layout](Pen& p, int x, int y) { layout.draw(p, x, y); }});
 }
 
@@ -232,25 +241,25 @@ std::vector<Tick> ticks_within(const ValueRange& range, int height, int row) {
     return ticks;
 }
 
-Block bar_block(Pen& pen, const ColorBar& given, int room_x, int room_y) {
-    const int row = pen.px(row_height), half_row = row / 2;
+Block bar_block(const TextMetrics& metrics, const ColorBar& given, int room_x, int room_y) {
+    const int row = metrics.px(row_height), half_row = row / 2;
     const ColorBar bar = fitting(given, room_y, row);
     BarLayout layout;
-    layout.bar = pen.px(bar_width);
-    layout.arrow = pen.px(arrow_height);
-    layout.tick = pen.px(tick_length);
-    layout.text_x = layout.bar + layout.tick + pen.px(tick_gap);
+    layout.bar = metrics.px(bar_width);
+    layout.arrow = metrics.px(arrow_height);
+    layout.tick = metrics.px(tick_length);
+    layout.text_x = layout.bar + layout.tick + metrics.px(tick_gap);
     // The texts of the ends reach beyond the bar by half a row.
     layout.top = bar.range.clips_above() ? std::max(layout.arrow, half_row) : half_row;
     const int below = bar.range.clips_below() ? std::max(layout.arrow, half_row) : half_row;
     const int others = layout.top + below + (bar.nan_color ? row : 0) + (bar.title.empty() ? 0 : row);
-    layout.height = std::max(2, std::min(pen.px(longest_bar), room_y - others));
+    layout.height = std::max(2, std::min(metrics.px(longest_bar), room_y - others));
     layout.ticks = ticks_within(bar.range, layout.height, row);
     int widest = 0;
-    for (const Tick& tick : layout.ticks) widest = std::max(widest, pen.width(tick.text));
+    for (const Tick& tick : layout.ticks) widest = std::max(widest, metrics.width(tick.text));
     const std::string missing = "no value";
-    const int nan_y = layout.top + layout.height + below, swatch = pen.px(swatch_size);
-    if (bar.nan_color) widest = std::max(widest, pen.width(missing));
+    const int nan_y = layout.top + layout.height + below, swatch = metrics.px(swatch_size);
+    if (bar.nan_color) widest = std::max(widest, metrics.width(missing));
     const auto draw = [=](Pen& p, int x, int y) {
         // An arrow stands right above its bar.
         const int arrow_y = layout.top - layout.arrow;
@@ -262,7 +271,8 @@ Block bar_block(Pen& pen, const ColorBar& given, int room_x, int room_y) {
                         rgb(*bar.nan_color));
         p.write(missing, x + layout.text_x, y + nan_y, row);
     };
-    return titled(pen, bar.title, room_x, {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), draw});
+    return titled(metrics, bar.title, room_x,
+                  {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), draw});
 }
 
 bool at_right(Corner corner) {
@@ -280,29 +290,62 @@ void draw_block(Pen& pen, const Block& block, const PixelRect& panel) {
     block.draw(pen, panel.x + pen.px(padding), panel.y + pen.px(padding));
 }
 
+/// The blocks of an annotation on their panels, next to each other from the corner of a picture inwards.
+class AnnotationLayout {
+  public:
+    AnnotationLayout(const Annotation& annotation, Corner corner, Vec2i picture, float em)
+        : metrics_(em), corner_(corner), picture_(picture), used_(border()) {
+        const int room_y = picture.y() - 2 * (border() + pad());
+        for (const Legend& legend : annotation.legends)
+            place(legend_block(metrics_, legend, room_x(), room_y));
+        for (const ColorBar& bar : annotation.bars) place(bar_block(metrics_, bar, room_x(), room_y));
+    }
+
+    void draw(Canvas& canvas) const {
+        Pen pen(canvas, metrics_);
+        for (const auto& [block, panel] : panels_) draw_block(pen, block, panel);
+    }
+
+  private:
+    int border() const { return metrics_.px(margin); }
+    int pad() const { return metrics_.px(padding); }
+    int room_x() const { return picture_.x() - used_ - border() - 2 * pad(); }
+
+    void place(const Block& block) {
+        const int width = block.width + 2 * pad(), height = block.height + 2 * pad();
+        const int x = at_right(corner_) ? picture_.x() - used_ - width : used_;
+        const int y = at_bottom(corner_) ? picture_.y() - border() - height : border();
+        panels_.push_back({block, {x, y, width, height}});
+        used_ += width + metrics_.px(gap);
+    }
+
+    struct Panel {
+        Block block;
+        PixelRect rect;
+    };
+    TextMetrics metrics_;
+    Corner corner_;
+    Vec2i picture_;
+    int used_;  ///< of the picture's width, from the corner inwards
+    std::vector<Panel> panels_;
+};
+
+/// Text as large as asked for, or as small as a bar needs to fit.
+AnnotationLayout laid_out(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                          Vec2i picture) {
+    const float height = float(picture.y());
+    float em = settings.text_size * height;
+    for (const ColorBar& bar : annotation.bars) em = std::min(em, height / least_height(bar));
+    return {annotation, settings.corner, picture, std::max(smallest_text, em)};
+}
+
 }  // namespace
 
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                      Image& picture) {
     if (annotation.empty()) return;
     Canvas canvas(picture);
-    const float height = float(picture.height());
-    float em = settings.text_size * height;
-    for (const ColorBar& bar : annotation.bars) em = std::min(em, height / least_height(bar));
-    Pen pen(canvas, std::max(smallest_text, em));
-    const int border = pen.px(margin), pad = pen.px(padding);
-    const int room_y = picture.height() - 2 * (border + pad);
-    int used = border;  // of the picture's width, from the corner inwards
-    const auto place = [&](const Block& block) {
-        const int width = block.width + 2 * pad, height = block.height + 2 * pad;
-        const int x = at_right(settings.corner) ? picture.width() - used - width : used;
-        const int y = at_bottom(settings.corner) ? picture.height() - border - height : border;
-        draw_block(pen, block, {x, y, width, height});
-        used += width + pen.px(gap);
-    };
-    const auto room_x = [&] { return picture.width() - used - border - 2 * pad; };
-    for (const Legend& legend : annotation.legends) place(legend_block(pen, legend, room_x(), room_y));
-    for (const ColorBar& bar : annotation.bars) place(bar_block(pen, bar, room_x(), room_y));
+    laid_out(annotation, settings, {picture.width(), picture.height()}).draw(canvas);
 }
 
 }  // namespace easypbr::app
