@@ -161,6 +161,7 @@ def test_overrides_that_no_object_has_are_errors(style, error, message):
 def test_annotations_are_drawn_when_asked_for_and_never_into_layers():
     cloud = labelled_cloud()
     view = viewer(cloud)
+    view.camera = view.camera  # pinned: an automatic one leaves room for the legend
     plain, layers = view.render(samples=1), view.layers()
     assert view.settings.annotation.legend.value is False
     view.settings.annotation.legend = True
@@ -180,14 +181,25 @@ def test_annotations_are_drawn_when_asked_for_and_never_into_layers():
 def test_render_takes_legend_and_colorbar(tmp_path):
     mesh = shapes.sphere(1.0, 24)
     mesh.add_scalar("wave", mesh.V[:, 1])
-    plain = easypbr.render(mesh, size=(160, 120), samples=1)
     barred = easypbr.render(mesh, size=(160, 120), samples=1, colorbar=True)
     linear = easypbr.render(mesh, size=(160, 120), samples=1, colorbar=True, hdr=True)
     table = easypbr.colormap("viridis")
-    column = np.argmax((barred != plain).any(axis=2).sum(axis=0) * (np.arange(160) > 80))
-    found = (barred[:, column:, None, :3] == table).all(axis=3).any(axis=2).sum(axis=0)
-    assert found.max() > 50
+    found = (barred[:, :, None, :3] == table).all(axis=3).any(axis=2).sum(axis=0)
+    assert found[100:].max() > 50
+    assert found[100:].max() > 2 * found[:100].max(), "the ball is lit"
     assert linear.dtype == np.float32 and linear.max() <= 50
+
+
+def test_the_camera_leaves_room_for_the_colour_bar():
+    mesh = shapes.box((4, 1.2, 1))
+    mesh.add_scalar("stress", mesh.V[:, 0])
+    view = viewer(mesh, annotation={"colorbar": True})
+    view.camera = view.camera  # pinned where it was fitted beside the bar
+    seen = (view.layers(["object_id"])["object_id"] > 0).any(axis=0)
+    barred = view.render(samples=1)
+    view.settings.annotation.colorbar = False
+    touched = (view.render(samples=1) != barred).any(axis=(0, 2))
+    assert seen.any() and touched.any() and not (touched & seen).any()
 
 
 def test_asking_for_what_there_is_nothing_for_is_a_warning(caplog):

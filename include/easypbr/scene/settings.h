@@ -198,6 +198,7 @@ struct BasicAnnotationSettings {
     std::string title;           ///< empty: the name of the values
     Corner corner = Corner::top_right;
     float text_size = 0.03f;  ///< fraction of the image height, 0.005 to 0.2
+    bool operator==(const BasicAnnotationSettings&) const = default;
 };
 using AnnotationSettings = BasicAnnotationSettings<Auto>;
 

@@ -235,15 +235,16 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
 }
 
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {
-    const bool legend = settings.annotation.legend, colorbar = settings.annotation.colorbar;
-    if (!legend && !colorbar) return {};
+    if (!settings.annotation.legend && !settings.annotation.colorbar) return {};
     const Collector found(scene, settings);
-    Annotation annotation{found.legends(), found.bars()};
-    if (legend && annotation.legends.empty())
+    return {found.legends(), found.bars()};
+}
+
+void warn_of_missing(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
+    if (settings.legend && annotation.legends.empty())
         log_warning("annotation.legend: nothing is coloured by labels, there is no legend");
-    if (colorbar && annotation.bars.empty())
+    if (settings.colorbar && annotation.bars.empty())
         log_warning("annotation.colorbar: nothing is coloured by values, there is no colour bar");
-    return annotation;
 }
 
 }  // namespace easypbr::app

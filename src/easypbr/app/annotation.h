@@ -7,6 +7,7 @@
 
 #include "easypbr/app/canvas.h"
 #include "easypbr/scene/element_colors.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
@@ -40,9 +41,15 @@ struct Annotation {
 };
 
 /// What the settings ask for of the visible objects: a legend for each label map, a colour bar for each name,
-/// range and colormap. Bars of the same title have the name of their object added. Logs a warning when they
-/// ask for something that there is nothing for.
+/// range and colormap. Bars of the same title have the name of their object added.
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings);
+/// Logs a warning where the settings ask for something that there is nothing for.
+void warn_of_missing(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings);
+
+/// The side of a picture of this size that the annotation takes, beside or above and below, whichever is
+/// less. Nothing where that is more than a third.
+Insets annotation_strip(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                        Vec2i size);
 
 /// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height.
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,

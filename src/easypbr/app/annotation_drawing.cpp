@@ -17,6 +17,8 @@ constexpr float margin = 0.8f, padding = 0.6f, gap = 0.6f;
 constexpr float row_height = 1.4f, swatch_size = 0.95f, swatch_gap = 0.5f, column_gap = 1.2f;
 constexpr float bar_width = 1.1f, longest_bar = 14, tick_length = 0.35f, tick_width = 0.07f, tick_gap = 0.3f,
                 arrow_height = 0.7f;
+/// Part of the picture that an automatic camera leaves to annotations, at most.
+constexpr double largest_strip = 1.0 / 3;
 /// Nothing is readable below.
 constexpr float smallest_text = 7;
 
@@ -301,6 +303,18 @@ class AnnotationLayout {
         for (const ColorBar& bar : annotation.bars) place(bar_block(metrics_, bar, room_x(), room_y));
     }
 
+    Insets strip() const {
+        const double across = double(used_) / picture_.x(),
+                     along = double(border() + tallest_ + metrics_.px(gap)) / picture_.y();
+        Insets insets;
+        if (std::min(across, along) > largest_strip) return insets;
+        if (across <= along)
+            (at_right(corner_) ? insets.right : insets.left) = across;
+        else
+            (at_bottom(corner_) ? insets.bottom : insets.top) = along;
+        return insets;
+    }
+
     void draw(Canvas& canvas) const {
         Pen pen(canvas, metrics_);
         for (const auto& [block, panel] : panels_) draw_block(pen, block, panel);
@@ -317,6 +331,7 @@ class AnnotationLayout {
         const int y = at_bottom(corner_) ? picture_.y() - border() - height : border();
         panels_.push_back({block, {x, y, width, height}});
         used_ += width + metrics_.px(gap);
+        tallest_ = std::max(tallest_, height);
     }
 
     struct Panel {
@@ -326,7 +341,8 @@ class AnnotationLayout {
     TextMetrics metrics_;
     Corner corner_;
     Vec2i picture_;
-    int used_;  ///< of the picture's width, from the corner inwards
+    int used_;         ///< of the picture's width, from the corner inwards
+    int tallest_ = 0;  ///< panel's height
     std::vector<Panel> panels_;
 };
 
@@ -340,6 +356,11 @@ AnnotationLayout laid_out(const Annotation& annotation, const BasicAnnotationSet
 }
 
 }  // namespace
+
+Insets annotation_strip(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                        Vec2i size) {
+    return annotation.empty() ? Insets{} : laid_out(annotation, settings, size).strip();
+}
 
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                      Image& picture) {

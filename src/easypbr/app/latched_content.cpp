@@ -41,6 +41,24 @@ bool LatchedContent::release_outgrown(const SceneSnapshot& scene, Settings& sett
     return true;
 }
 
+LatchedContent::AnnotationAsked LatchedContent::asked(const BasicAnnotationSettings<Inferred>& annotation) {
+    if (annotation.legend || annotation.colorbar) return annotation;
+    return {};
+}
+
+void LatchedContent::release_camera(Settings& settings) const {
+    const AnnotationSettings& now = settings.annotation;
+    CameraSettings& camera = settings.camera;
+    if (names_.empty() || !camera.pose.empty() || camera.position.is_pinned()) return;
+    if (annotation_ == asked({now.legend.value_or(false), now.colorbar.value_or(false), now.title, now.corner,
+                              now.text_size}))
+        return;
+    camera.position.release();
+    camera.target.release();
+    camera.ortho_height.release();
+    camera.near.release();
+}
+
 void LatchedContent::follow(const SceneSnapshot& scene, const Settings& settings,
                             ResolvedSettings& resolved) {
     if (std::vector<Placed> now = placed(scene); now != placed_) {
@@ -80,7 +98,8 @@ void LatchedContent::bring_near_plane(const Settings& settings, ResolvedSettings
     resolved.settings.camera.near = camera.near;
 }
 
-void LatchedContent::keep(const SceneSnapshot& scene) {
+void LatchedContent::keep(const SceneSnapshot& scene, const BasicAnnotationSettings<Inferred>& annotation) {
+    annotation_ = asked(annotation);
     if (!names_.empty() && !has_new_names(scene)) return;
     bounds_ = scene.bounds();
     for (const SceneSnapshot::Object& object : scene.objects) names_.insert(object.name);

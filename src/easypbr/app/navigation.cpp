@@ -47,8 +47,9 @@ void Navigation::fit(Vec2i size) {
     if (scene.objects.empty()) return;
     const CameraSettings lens = session_.settings().camera;
     const ViewPoint view = session_.view_point(size);
-    const Camera camera = fit_camera(scene, view.camera.T_world_cam.linear(), lens,
-                                     double(size.x()) / size.y(), session_.insets());
+    const Insets covered = session_.insets().with(session_.annotation_strip(size));
+    const Camera camera =
+        fit_camera(scene, view.camera.T_world_cam.linear(), lens, double(size.x()) / size.y(), covered);
     const Vec3d forward = -camera.T_world_cam.linear().col(2);
     const double depth = (scene.bounds().center() - camera.position()).dot(forward);
     session_.set_view_point({camera, camera.position() + forward * depth});

@@ -13,6 +13,19 @@
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
+namespace {
+
+/// Whether the camera is still to be placed for the content, or to be made as wide as that is.
+bool frames_content(const CameraSettings& camera) {
+    const bool places = camera.pose.empty() && !camera.position.value();
+    return places || (camera.projection == Projection::orthographic && !camera.ortho_height.value());
+}
+
+Insets strip_of(const SceneSnapshot& scene, const InferredSettings& settings, Vec2i size) {
+    return annotation_strip(annotation_of(scene, settings), settings.annotation, size);
+}
+
+}  // namespace
 
 void check_picture_size(Vec2i size) {
     if (size.x() < 1 || size.y() < 1 || size.x() > max_image_side || size.y() > max_image_side)
@@ -99,6 +112,7 @@ SceneSnapshot Session::snapshot() {
         settings_->tonemap.exposure.release();
     }
     environment_hash_ = hash;
+    latched_content_.release_camera(*settings_);
     if (latched_content_.release_outgrown(scene, *settings_)) {
         scene_.release_light_radii();
         for (auto& [name, light] : scene.lights) light.radius.release();
@@ -106,10 +120,26 @@ SceneSnapshot Session::snapshot() {
     return scene;
 }
 
+ResolvedSettings Session::resolve_framed(const SceneSnapshot& scene, Vec2i size,
+                                         std::optional<int> samples) const {
+    ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size, samples, insets_);
+    if (!frames_content(settings_->camera)) return resolved;
+    const Insets covered = insets_.with(strip_of(scene, resolved.settings, size));
+    return covered == insets_ ? resolved : easypbr::resolve(scene, *settings_, size, samples, covered);
+}
+
+Insets Session::annotation_strip(std::optional<Vec2i> size) {
+    const AnnotationSettings& asked = settings_->annotation;
+    if (!asked.legend.value_or(false) && !asked.colorbar.value_or(false)) return {};
+    check_picture_size(size_or(size));
+    const SceneSnapshot scene = snapshot();
+    return strip_of(scene, easypbr::resolve(scene, *settings_, size_or(size)).settings, size_or(size));
+}
+
 ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
     check_picture_size(size_or(size));
     const SceneSnapshot scene = snapshot();
-    ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size_or(size), {}, insets_);
+    ResolvedSettings resolved = resolve_framed(scene, size_or(size));
     latched_content_.follow(scene, *settings_, resolved);
     return resolved;
 }
@@ -127,8 +157,7 @@ Prepared Session::prepare(const PictureOptions& options) {
         prepared.images = files_.images();
     }
     const Stopwatch watch(timing_.draw);
-    prepared.resolved = easypbr::resolve(prepared.scene, *settings_, prepared.options.size,
-                                         prepared.options.samples, insets_);
+    prepared.resolved = resolve_framed(prepared.scene, prepared.options.size, prepared.options.samples);
     latched_content_.follow(prepared.scene, *settings_, prepared.resolved);
     warnings_.check(prepared.scene, *settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
@@ -162,6 +191,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
 
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {
     Annotation annotation = annotation_of(prepared.scene, prepared.resolved.settings);
+    warn_of_missing(annotation, prepared.resolved.settings.annotation);
     if (annotation.empty()) return;
     drawn.finish_.annotate = [annotation = std::move(annotation),
                               settings = prepared.resolved.settings.annotation](Image& picture) {
@@ -352,7 +382,7 @@ Drawn Session::draw_surfaces_once(const PictureOptions& options, bool picture, c
 
 Moment Session::moment(std::optional<Vec2i> size) {
     Moment moment{snapshot(), {}};
-    moment.camera = easypbr::resolve(moment.scene, *settings_, size_or(size), {}, insets_).camera;
+    moment.camera = resolve_framed(moment.scene, size_or(size)).camera;
     return moment;
 }
 
@@ -396,7 +426,7 @@ void Session::replace_settings(const Settings& settings) {
 void Session::latch_from(const Prepared& prepared) {
     if (prepared.scene.objects.empty()) return;
     latch(*settings_, prepared.resolved.settings);
-    latched_content_.keep(prepared.scene);
+    latched_content_.keep(prepared.scene, prepared.resolved.settings.annotation);
     for (const auto& [name, radius] : prepared.resolved.light_radii) scene_.latch_light_radius(name, radius);
 }
 

@@ -150,6 +150,9 @@ class Session {
     /// latched yet leaves it free.
     void set_insets(const Insets& insets) { insets_ = insets; }
     const Insets& insets() const { return insets_; }
+    /// The side of the next picture that its legend and colour bars take, which an automatic camera leaves
+    /// free.
+    Insets annotation_strip(std::optional<Vec2i> size = std::nullopt);
 
     /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
     /// app/custom_pass.h.
@@ -209,6 +212,9 @@ class Session {
     /// Snapshot, images, auto parameters.
     Prepared prepare(const PictureOptions& options);
     SceneSnapshot snapshot();
+    /// An automatic camera that is not latched yet leaves the insets and the annotation's strip free.
+    ResolvedSettings resolve_framed(const SceneSnapshot& scene, Vec2i size,
+                                    std::optional<int> samples = std::nullopt) const;
     /// Before anything is drawn: replaces a camera that is warped, and the size, by what has to be drawn;
     /// outdates what was drawn before. Returns what will be drawn, a picture, surfaces, or both.
     Drawn begin(Prepared& prepared, bool picture, bool surfaces);

@@ -7,6 +7,7 @@
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
+#include "easypbr/scene/auto_parameters.h"
 #include "easypbr/scene/offset.h"
 #include "easypbr/scene/resolve.h"
 
@@ -32,9 +33,24 @@ Cylinder swept(const SceneSnapshot& scene, const Vec3d& axis) {
     return swept;
 }
 
-/// The distance from which a camera that looks at the cylinder's middle sees all of it: a point p (from the
-/// middle, in the camera's axes) is in the picture from d >= |x| / tangent + z on.
-double distance_for(const Cylinder& cylinder, const Mat3d& R_world_cam, const Vec2d& tangents) {
+/// The part of a picture that content is to stay in, per unit of depth: where its middle is from the optical
+/// axis, and half of its sides.
+struct FreePart {
+    Vec2d middle, half;
+};
+
+FreePart free_part(const Camera& lens, double margin, const Vec2i& size, const Insets& insets) {
+    const double aspect = double(size.x()) / size.y(), tangent = std::tan(radians(lens.fov_y_deg) / 2);
+    const detail::Edges e = detail::edges_of({aspect, insets}, margin);
+    const auto across = [&](double part) { return tangent * part * size.x() / size.y(); };
+    return {{across((e.right - e.left) / 2), tangent * ((e.top - e.bottom) / 2)},
+            {across((e.right + e.left) / 2), tangent * ((e.top + e.bottom) / 2)}};
+}
+
+/// The distance from which a camera sees all of the cylinder, whose middle is seen in the middle m of the
+/// part: a point p (from the cylinder's middle, in the camera's axes) is in the part, h to each side, from
+/// d >= |x + m z| / h + z on.
+double distance_for(const Cylinder& cylinder, const Mat3d& R_world_cam, const FreePart& part) {
     constexpr int directions = 256;
     const Vec3d side = cylinder.axis.unitOrthogonal(), other = cylinder.axis.cross(side);
     double distance = 0;
@@ -43,8 +59,9 @@ double distance_for(const Cylinder& cylinder, const Mat3d& R_world_cam, const Ve
         const Vec3d rim = cylinder.radius * (std::cos(angle) * side + std::sin(angle) * other);
         for (const double end : {-1.0, 1.0}) {
             const Vec3d p = R_world_cam.transpose() * (rim + end * cylinder.half_height * cylinder.axis);
-            distance = std::max(
-                {distance, std::abs(p.x()) / tangents.x() + p.z(), std::abs(p.y()) / tangents.y() + p.z()});
+            for (int axis = 0; axis < 2; ++axis)
+                distance = std::max(distance,
+                                    std::abs(p[axis] + part.middle[axis] * p.z()) / part.half[axis] + p.z());
         }
     }
     return distance;
@@ -61,7 +78,7 @@ struct Round {
     Cylinder content;
     Camera camera;
     bool fits = false;  ///< the distance is free
-    Vec2d tangents;
+    FreePart part;
 };
 
 Round round_of(Session& session, const Vec2i& size) {
@@ -70,14 +87,17 @@ Round round_of(Session& session, const Vec2i& size) {
     round.camera = round.resolved.camera;
     round.fits =
         is_automatic(session.settings().camera) && round.content.radius + round.content.half_height > 0;
-    const double margin = 1 - double(round.resolved.settings.camera.margin);
-    const double tangent = std::tan(radians(round.camera.fov_y_deg) / 2) * margin;
-    round.tangents = {tangent * size.x() / size.y(), tangent};
+    if (round.fits)
+        round.part = free_part(round.camera, round.resolved.settings.camera.margin, size,
+                               session.annotation_strip(size));
     return round;
 }
 
 void place_at(Camera& camera, const Round& round, double distance) {
-    camera.T_world_cam.translation() = round.content.center + camera.T_world_cam.linear().col(2) * distance;
+    const Mat3d axes = camera.T_world_cam.linear();
+    const Vec2d aside = round.part.middle * distance;
+    camera.T_world_cam.translation() =
+        round.content.center + axes.col(2) * distance - axes.leftCols<2>() * aside;
 }
 
 /// The camera turned up about the content's middle, in the vertical plane that it stands in.
@@ -109,7 +129,7 @@ CameraPath turntable(Session& session, double duration_s) {
     const Round round = round_of(session, session.settings().image.size);
     Camera camera = round.camera;
     if (round.fits)
-        place_at(camera, round, distance_for(round.content, camera.T_world_cam.linear(), round.tangents));
+        place_at(camera, round, distance_for(round.content, camera.T_world_cam.linear(), round.part));
     return CameraPath::orbit(camera, round.content.center, round.content.axis, 360, duration_s);
 }
 
@@ -137,8 +157,8 @@ OrbitGrid orbit_grid(Session& session, int columns, int rows, double row_step_de
         grid.elevations_deg.push_back(elevation + up);
         firsts.push_back(raised(round, up));
         if (round.fits)
-            distance = std::max(
-                distance, distance_for(round.content, firsts.back().T_world_cam.linear(), round.tangents));
+            distance = std::max(distance,
+                                distance_for(round.content, firsts.back().T_world_cam.linear(), round.part));
     }
     for (Camera& first : firsts) {
         if (round.fits) place_at(first, round, distance);

@@ -275,7 +275,9 @@ class RenderJob {
             std::ranges::move(all.objects, std::back_inserter(scene.objects));
             all = std::move(scene);
         }
-        return resolve(all, session_.settings(), session_.settings().image.size).camera;
+        return resolve(all, session_.settings(), session_.settings().image.size, {},
+                       session_.annotation_strip())
+            .camera;
     }
 
     double time_of(double time_s) const { return options_.animation_time.value_or(0) + time_s; }

@@ -1,6 +1,7 @@
 // Automatic parameters: infers every value that an image needs from a scene and the user's settings.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +19,12 @@ namespace easypbr {
 struct Insets {
     double left = 0, right = 0, top = 0, bottom = 0;
     bool operator==(const Insets&) const = default;
+
+    /// What these or the others cover.
+    Insets with(const Insets& other) const {
+        return {std::max(left, other.left), std::max(right, other.right), std::max(top, other.top),
+                std::max(bottom, other.bottom)};
+    }
 };
 
 /// All inputs of the renderer from the settings, fully inferred.
