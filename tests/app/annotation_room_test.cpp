@@ -118,6 +118,27 @@ TEST(AnnotationRoom, IsWhatIsDrawn) {
     EXPECT_EQ(annotation_strip({}, settings, size), Insets());
 }
 
+// A swatch is 0.95 text sizes wide. Text of 11.4 pixels is 11 high, from capitals to descenders.
+TEST(AnnotationRoom, TakesReadableTextWhereThatFits) {
+    const auto swatch = [](const std::string& name, Vec2i size) {
+        Image picture = grey(size);
+        draw_annotation({{{"", {{name, {200, 0, 0}}}}}, {}}, {}, picture);
+        int count = 0;
+        for (int y = 0; y < size.y(); ++y)
+            for (int x = 0; x < size.x(); ++x) {
+                const uint8_t* p = picture.at<uint8_t>(x, y);
+                count += p[0] == 200 && p[1] == 0 && p[2] == 0;
+            }
+        return count;
+    };
+    EXPECT_EQ(swatch("a", {1000, 800}), 23 * 23) << "0.03 times 800 pixels";
+    EXPECT_EQ(swatch("a", {600, 240}), 11 * 11);
+    // A third of 120 pixels: text of 10.4 takes 41 with border 8, padding 6 twice, row 15 and gap 6;
+    // of 9.4, 39.
+    EXPECT_EQ(swatch("a", {120, 120}), 9 * 9);
+    EXPECT_EQ(swatch("a name that is wider than the picture", {120, 60}), 7 * 7) << "0.95 times 7";
+}
+
 // Beside the strip the content is framed as in a whole picture: its margin is 5 %, one axis fills the rest.
 TEST(AnnotationRoom, IsLeftByAnAutomaticCamera) {
     for (const Projection projection : {Projection::perspective, Projection::orthographic})

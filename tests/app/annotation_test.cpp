@@ -214,10 +214,12 @@ TEST(Annotation, StandsInItsCornerAndLeavesTheRest) {
 }
 
 TEST(Annotation, GrowsWithThePicture) {
-    const auto size = [](int scale) {
+    BasicAnnotationSettings<Inferred> settings;
+    settings.text_size = 0.05f;  // in the smaller picture, too, no less than 11 pixels
+    const auto size = [&](int scale) {
         const Image before = plain(PixelType::u8, 400 * scale, 300 * scale);
         Image picture = before;
-        draw_annotation({{legend_of(5)}, {}}, {}, picture);
+        draw_annotation({{legend_of(5)}, {}}, settings, picture);
         const PixelRect touched = difference(before, picture);
         return Vec2(float(touched.width), float(touched.height));
     };
@@ -266,7 +268,7 @@ TEST(Annotation, ManyClassesTakeColumnsAndThenSayHowManyAreMissing) {
         ASSERT_FALSE(found.empty()) << entry.name;
         columns.insert(found.front().x());
     }
-    EXPECT_EQ(columns.size(), 3u);  // 60 rows of 12.6 pixels in 300 less margins
+    EXPECT_EQ(columns.size(), 3u);  // 60 rows of 13 pixels in 300 less margins; 4 columns are over a third
     Image full = plain(PixelType::u8, 800, 300);
     draw_annotation({{more}, {}}, {}, full);
     EXPECT_FALSE(places(full, more.entries[0].color).empty());

@@ -197,7 +197,7 @@ struct BasicAnnotationSettings {
     MaybeAuto<bool> colorbar{};  ///< of the values that colour objects; automatic: no
     std::string title;           ///< empty: the name of the values
     Corner corner = Corner::top_right;
-    float text_size = 0.03f;  ///< fraction of the image height, 0.005 to 0.2
+    float text_size = 0.03f;  ///< fraction of the image height, 0.005 to 0.2; at least 11 pixels where that fits
     bool operator==(const BasicAnnotationSettings&) const = default;
 };
 using AnnotationSettings = BasicAnnotationSettings<Auto>;

@@ -51,7 +51,8 @@ void warn_of_missing(const Annotation& annotation, const BasicAnnotationSettings
 Insets annotation_strip(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                         Vec2i size);
 
-/// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height.
+/// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height,
+/// but text of at least 11 pixels where that fits.
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                      Image& picture);
 

@@ -19,6 +19,9 @@ constexpr float bar_width = 1.1f, longest_bar = 14, tick_length = 0.35f, tick_wi
                 arrow_height = 0.7f;
 /// Part of the picture that an automatic camera leaves to annotations, at most.
 constexpr double largest_strip = 1.0 / 3;
+/// Small text: 11 pixels from the top of its capitals to the end of its descenders, which are 0.965 of its
+/// size.
+constexpr float small_text = 11.4f;
 /// Nothing is readable below.
 constexpr float smallest_text = 7;
 
@@ -79,6 +82,7 @@ class Pen : public TextMetrics {
 /// Something of known size that is drawn at a place.
 struct Block {
     int width = 0, height = 0;
+    bool is_whole = true;  ///< nothing is left out or shortened
     std::function<void(Pen&, int x, int y)> draw;
 };
 
@@ -86,7 +90,7 @@ Block titled(const TextMetrics& metrics, const std::string& text, int room_x, Bl
     if (text.empty()) return block;
     const std::string title = metrics.shortened(text, std::max(room_x, block.width));
     const int row = metrics.px(row_height);
-    return {std::max(block.width, metrics.width(title)), block.height + row,
+    return {std::max(block.width, metrics.width(title)), block.height + row, block.is_whole && title == text,
             [title, row, inner = block.draw](Pen& p, int x, int y) {
                 p.write(title, x, y, row);
                 inner(p, x, y + row);
@@ -113,6 +117,7 @@ class LegendLayout {
             if (needed == 1 || width() <= room_x) return;
         }
         // They do not fit: the last row says so.
+        is_whole_ = false;
         for (size_t columns = std::min(needed - 1, most_columns);; --columns) {
             shown_.resize(columns * most_rows - 1);
             rest_ = metrics.shortened(fmt::format("+ {} more", count - shown_.size()), room_x);
@@ -124,6 +129,7 @@ class LegendLayout {
 
     int width() const { return x_.back() - column_gap_; }
     int height() const { return int(rows_) * row_; }
+    bool is_whole() const { return is_whole_; }
 
     void draw(Pen& pen, int x, int y) const {
         for (size_t i = 0; i < shown_.size(); ++i) {
@@ -142,6 +148,7 @@ class LegendLayout {
     void take(const TextMetrics& metrics, const Legend& legend, size_t count, int room) {
         for (const LegendEntry& entry : std::span(legend.entries).first(count)) {
             const std::string name = metrics.shortened(entry.name, room);
+            is_whole_ &= name == entry.name;
             shown_.push_back({{name, entry.color}, metrics.width(name)});
         }
     }
@@ -161,6 +168,7 @@ class LegendLayout {
 
     int row_, swatch_, text_x_, column_gap_, rest_width_ = 0;
     size_t rows_ = 1;
+    bool is_whole_ = true;
     std::vector<Shown> shown_;
     std::string rest_;
     std::vector<int> x_;
@@ -168,9 +176,9 @@ class LegendLayout {
 
 Block legend_block(const TextMetrics& metrics, const Legend& legend, int room_x, int room_y) {
     const LegendLayout layout(metrics, legend, room_x, room_y);
-    return titled(
-        metrics, legend.title, room_x,
-        {layout.width(), layout.height(), [layout](Pen& p, int x, int y) { layout.draw(p, x, y); }});
+    return titled(metrics, legend.title, room_x,
+                  {layout.width(), layout.height(), layout.is_whole(),
+                   [layout](Pen& p, int x, int y) { layout.draw(p, x, y); }});
 }
 
 Rgb8 rgb(const Rgba8& color) {
@@ -273,8 +281,9 @@ Block bar_block(const TextMetrics& metrics, const ColorBar& given, int room_x, i
                         rgb(*bar.nan_color));
         p.write(missing, x + layout.text_x, y + nan_y, row);
     };
+    const bool is_whole = bar.title == given.title && bar.nan_color == given.nan_color;
     return titled(metrics, bar.title, room_x,
-                  {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), draw});
+                  {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), is_whole, draw});
 }
 
 bool at_right(Corner corner) {
@@ -302,6 +311,9 @@ class AnnotationLayout {
             place(legend_block(metrics_, legend, room_x(), room_y));
         for (const ColorBar& bar : annotation.bars) place(bar_block(metrics_, bar, room_x(), room_y));
     }
+
+    /// Whether all of it is shown, in a strip that an automatic camera leaves free.
+    bool fits() const { return is_whole_ && used_ <= picture_.x() && strip() != Insets(); }
 
     Insets strip() const {
         const double across = double(used_) / picture_.x(),
@@ -332,6 +344,7 @@ class AnnotationLayout {
         panels_.push_back({block, {x, y, width, height}});
         used_ += width + metrics_.px(gap);
         tallest_ = std::max(tallest_, height);
+        is_whole_ &= block.is_whole;
     }
 
     struct Panel {
@@ -343,16 +356,23 @@ class AnnotationLayout {
     Vec2i picture_;
     int used_;         ///< of the picture's width, from the corner inwards
     int tallest_ = 0;  ///< panel's height
+    bool is_whole_ = true;
     std::vector<Panel> panels_;
 };
 
-/// Text as large as asked for, or as small as a bar needs to fit.
+/// Text as large as asked for, or as small as a bar needs to fit. Small text is made larger where there is
+/// room.
 AnnotationLayout laid_out(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                           Vec2i picture) {
     const float height = float(picture.y());
-    float em = settings.text_size * height;
-    for (const ColorBar& bar : annotation.bars) em = std::min(em, height / least_height(bar));
-    return {annotation, settings.corner, picture, std::max(smallest_text, em)};
+    float most = height;
+    for (const ColorBar& bar : annotation.bars) most = std::min(most, height / least_height(bar));
+    const float asked = std::max(smallest_text, std::min(settings.text_size * height, most));
+    for (float em = std::min(small_text, most); em > asked; em -= 1) {
+        AnnotationLayout larger(annotation, settings.corner, picture, em);
+        if (larger.fits()) return larger;
+    }
+    return {annotation, settings.corner, picture, asked};
 }
 
 }  // namespace
