@@ -1,4 +1,5 @@
 // The room that annotations take of a picture, and that an automatic camera leaves them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
