@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string_view>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr {
@@ -83,57 +81,6 @@ ColorTable coolwarm() {
     return table;
 }
 
-constexpr size_t palette_grain = 1 << 16;
-constexpr Eigen::Index most_samples = 1 << 18;
-/// Differences of values up to here are finite.
-constexpr float largest = 1e38f;
-
-struct Extent {
-    float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
-
-    void add(const Extent& other) {
-        min = std::min(min, other.min);
-        max = std::max(max, other.max);
-    }
-};
-
-Extent finite_extent(const Array1f& values) {
-    const size_t count = size_t(values.rows());
-    std::vector<Extent> parts((count + palette_grain - 1) / palette_grain);
-    parallel_chunks(count, palette_grain, [&](size_t begin, size_t end) {
-        Extent& part = parts[begin / palette_grain];
-        for (size_t i = begin; i < end; ++i)
-            if (const float value = values(Eigen::Index(i)); std::isfinite(value)) part.add({value, value});
-    });
-    Extent all;
-    for (const Extent& part : parts) all.add(part);
-    return all;
-}
-
-/// 1st and 99th percentile.
-Extent central_extent(const Array1f& values) {
-    const Eigen::Index step = (values.rows() + most_samples - 1) / most_samples;
-    std::vector<float> samples;
-    for (Eigen::Index i = 0; i < values.rows(); i += step)
-        if (std::isfinite(values(i))) samples.push_back(values(i));
-    if (samples.empty()) return {};
-    const auto at = [&](double part) {
-        const auto place =
-            samples.begin() + std::ptrdiff_t(std::floor(part * double(samples.size() - 1) + 0.5));
-        std::nth_element(samples.begin(), place, samples.end());
-        return *place;
-    };
-    return {at(0.01), at(0.99)};
-}
-
-/// So wide that it can be divided by, with what it held in the middle.
-void widen(ValueRange& range) {
-    if (range.max - range.min > 1e-30f) return;
-    const float half = std::max(0.5f, std::abs(range.min) * 1e-3f);
-    range.min -= half;
-    range.max += half;
-}
-
 }  // namespace
 
 const std::vector<std::string>& colormap_names() {
@@ -161,42 +108,6 @@ const ColorTable& color_table(Colormap colormap) {
                                                      grey(),
                                                      coolwarm()};
     return tables[size_t(colormap)];
-}
-
-ValueRange automatic_range(const Array1f& values, bool diverging) {
-    const Extent all = finite_extent(values);
-    if (!(all.min <= all.max)) return {};
-    ValueRange range{all.min, all.max, all.min, all.max};
-    const Extent central = central_extent(values);
-    const double spread = double(central.max) - central.min;
-    if (spread > 0 && spread * 3 < double(all.max) - all.min) {
-        range.min = central.min;
-        range.max = central.max;
-    }
-    range.min = std::clamp(range.min, -largest, largest);
-    range.max = std::clamp(range.max, -largest, largest);
-    if (diverging && range.min < 0 && range.max > 0) {
-        range.max = std::max(range.max, -range.min);
-        range.min = -range.max;
-    }
-    widen(range);
-    return range;
-}
-
-ValueRange value_range(const Array1f& values, std::optional<float> min, std::optional<float> max,
-                       bool diverging) {
-    ValueRange range = automatic_range(values, diverging);
-    if (!min && !max) return range;
-    if (min) range.min = *min;
-    if (max) range.max = *max;
-    if (min && max && *min > *max)
-        throw ArgumentError(
-            fmt::format("style: expected color_min below color_max, got {} and {}", *min, *max));
-    // One end beyond all values: they all have the colour of the other end.
-    if (min && !max) range.max = std::max(range.max, range.min);
-    if (max && !min) range.min = std::min(range.min, range.max);
-    widen(range);
-    return range;
 }
 
 }  // namespace easypbr
