@@ -49,6 +49,8 @@ def limit(value: float) -> str:
 
 def range_of(field) -> str:
     """What values a setting takes, in words short enough for a table."""
+    if field.type == "colormap":
+        return ", ".join(f"`{choice}`" for choice in field.choices) + ", or colours: `#000080,#ffffff`"
     if field.type == "choice":
         return ", ".join(f"`{choice}`" for choice in field.choices)
     if field.type in ("boolean", "text", "color"):

@@ -6,8 +6,8 @@ usage: write_settings_stub.py FOLDER      that holds the package; writes FOLDER/
 import pathlib
 import sys
 
-TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str"}
-HEADER = '''from collections.abc import Iterator, Mapping
+TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str", "colormap": "str"}
+HEADER = '''from collections.abc import Callable, Iterator, Mapping
 from os import PathLike
 from typing import Literal, TypedDict
 
@@ -42,7 +42,12 @@ def read_type(field) -> str:
 
 
 def write_type(field) -> str:
-    extra = {"color": " | str | ArrayLike", "vector": " | ArrayLike | None", "text": " | PathLike[str] | None"}
+    extra = {
+        "color": " | str | ArrayLike",
+        "vector": " | ArrayLike | None",
+        "text": " | PathLike[str] | None",
+        "colormap": " | ArrayLike | Callable[..., object]",
+    }
     return read_type(field) + extra.get(field.type, "")
 
 

@@ -343,7 +343,7 @@ class Viewer(Sharing):
             self.close()
 
     def show_image(
-        self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None
+        self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: Any = None
     ) -> None:
         """Shows an image in the window, beside the scene: an array or tensor of height x width (x 1, 3 or 4), of uint8,
         uint16, floats, bool or integers. Under the name of one that is there it takes its place, as in every iteration of a

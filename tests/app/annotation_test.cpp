@@ -141,7 +141,7 @@ TEST(Ticks, AreInTheRangeAndNotTooMany) {
 
 // Row r of H rows from the top is the part of the range around (H - r - 1/2) / H: that entry of 256.
 TEST(Annotation, TheBarIsTheTable) {
-    for (const Colormap map : {Colormap::viridis, Colormap::turbo}) {
+    for (const Colormap& map : {Colormap::viridis, Colormap::turbo}) {
         const ColorBar bar = bar_of(map, {0, 1, 0, 1});
         Image picture = plain(PixelType::u8);
         draw_annotation({{}, {bar}}, {}, picture);

@@ -11,6 +11,8 @@ import png
     ("colr_by=height", "--style: there is no setting 'style.colr_by' (did you mean 'style.color_by'?)"),
     ("color_by=hight", "(did you mean 'height'?)"),
     ("colormap=virids", "(did you mean 'viridis'?)"),
+    ("colormap=#000080", "expected at least 2 colours, got 1"),
+    ("colormap=#000080,#12", "colour 2: "),
     ("box.point_size=0", "expected a number of"),
     ("bix.flat=true", "--style: there is no object 'bix' (did you mean 'box'?): the files are called box"),
 ])
@@ -78,6 +80,18 @@ def test_legends_and_colour_bars_are_written(render, tmp_path):
     plain, legend = png.read(tmp_path / "plain.png"), png.read(tmp_path / "legend.png")
     assert (plain != legend).any()
     assert len(colors(tmp_path / "height.png")) > 60  # the bar's entries
+
+
+def test_colormaps_are_reversed_or_lists_of_colours(render, tmp_path):
+    """Three points of the heights 0, 1 and 2 have the first, the middle and the last colour of their map. Entry 128 of
+    a map from black to red is 128 / 255 of the way."""
+    cloud = tmp_path / "cloud.obj"
+    cloud.write_text("v 0 0 0\nv 0 1 0\nv 0 2 0\n")
+    common = ["--style", "point_size=9", "--style", "color_by=height", "--style", "lit=false", "--set", "camera.up=+y"]
+    render(cloud, "-o", "red.png", *common, "--style", "colormap=#000000,#ff0000")
+    assert {(0, 0, 0), (128, 0, 0), (255, 0, 0)} <= colors(tmp_path / "red.png")
+    render(cloud, "-o", "grey.png", *common, "--style", "colormap=grey_r", "--style", "color_max=4")
+    assert {(255, 255, 255), (191, 191, 191), (127, 127, 127)} <= colors(tmp_path / "grey.png")
 
 
 def test_unknown_scalars_are_an_error(render, box):

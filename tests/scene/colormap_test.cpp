@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
+#include <ranges>
 
 #include "easypbr/core/error.h"
 
@@ -64,16 +66,80 @@ TEST(Colormap, CoolwarmIsThatOfThePaper) {
 }
 
 TEST(Colormap, NamesAreSuggested) {
-    for (const std::string& name : colormap_names())
-        EXPECT_EQ(colormap_names()[size_t(colormap_named(name))], name);
+    EXPECT_EQ(colormap_names().size(), 16u);
+    for (const std::string& name : colormap_names()) EXPECT_EQ(parse_colormap(name).text(), name);
+    EXPECT_EQ(colormap_named("Turbo"), Colormap::turbo);
     try {
-        colormap_named("viridiss");
+        parse_colormap("viridiss");
         FAIL();
     } catch (const NameError& error) {
-        EXPECT_STREQ(error.what(),
-                     "there is no colormap 'viridiss' (did you mean 'viridis'?): expected viridis, plasma, "
-                     "inferno, magma, turbo, cividis, grey, coolwarm");
+        EXPECT_STREQ(
+            error.what(),
+            "there is no colormap 'viridiss' (did you mean 'viridis'?): expected viridis, plasma, "
+            "inferno, magma, turbo, cividis, grey, coolwarm, one of these with _r behind it (reversed), "
+            "or colours such as '#000080,#ffffff,#800000'");
     }
+}
+
+TEST(Colormap, ReversedMapsHaveTheColoursInTheOppositeOrder) {
+    for (const std::string& name : colormap_names()) {
+        const Colormap map = parse_colormap(name);
+        const ColorTable table = color_table(map), reversed = color_table(map.reversed());
+        EXPECT_TRUE(std::ranges::equal(reversed, std::views::reverse(table))) << name;
+        EXPECT_EQ(map.reversed().reversed(), map);
+        EXPECT_NE(map.reversed(), map);
+    }
+    EXPECT_EQ(Colormap::magma.reversed().text(), "magma_r");
+    EXPECT_EQ(parse_colormap("#000000,#ff0000").reversed().text(), "#ff0000,#000000");
+    EXPECT_TRUE(parse_colormap("coolwarm_r").is_diverging() && parse_colormap("grey_r").is_grey());
+    EXPECT_FALSE(Colormap::viridis.is_diverging() || Colormap::viridis.is_grey());
+}
+
+// Entry i stands at i / 255 of the way through the colours.
+TEST(Colormap, OwnColoursAreEvenlySpacedAndInterpolatedInSrgb) {
+    const ColorTable two = color_table(parse_colormap("#000000,#ff0000"));
+    for (size_t i = 0; i < 256; ++i) EXPECT_EQ(two[i], (Rgb8{uint8_t(i), 0, 0}));
+    // 51 and 204 are 2/5 and 8/5 of the way between the three: 0.4 and 0.6 of a pair's, times 255.
+    const ColorTable three = color_table(parse_colormap("navy, #fff ,#800000"));
+    EXPECT_EQ(three[0], (Rgb8{0, 0, 128}));
+    EXPECT_EQ(three[51], (Rgb8{102, 102, 179}));  // 128 + 0.4 * 127 = 178.8
+    EXPECT_EQ(three[204], (Rgb8{179, 102, 102}));
+    EXPECT_EQ(three[255], (Rgb8{128, 0, 0}));
+    const Colormap array(Array3f(Array3f::Dense{{0, 0, 128 / 255.0f}, {1, 1, 1}, {128 / 255.0f, 0, 0}}));
+    EXPECT_EQ(array, parse_colormap("navy,#fff,#800000"));
+    EXPECT_EQ(array.text(), "#000080,#ffffff,#800000");
+    EXPECT_FALSE(array.is_diverging() || array == Colormap::viridis);
+}
+
+TEST(Colormap, ATableIsAMapOfTheSameTable) {
+    const ColorTable table = color_table(Colormap::turbo);
+    const Colormap copy(std::vector<Rgb8>(table.begin(), table.end()));
+    EXPECT_EQ(color_table(copy), table);
+    EXPECT_EQ(color_table(parse_colormap(copy.text())), table);
+    // Of 511 colours every other one stands at one of 256 even places.
+    std::vector<Rgb8> many(511, Rgb8{9, 9, 9});
+    for (size_t i = 0; i < 256; ++i) many[2 * i] = table[i];
+    EXPECT_EQ(color_table(Colormap(many)), table);
+}
+
+TEST(Colormap, BadColoursAreNamed) {
+    const auto told = [](auto&& make) -> std::string {
+        try {
+            make();
+        } catch (const ArgumentError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(told([] { parse_colormap("#ffffff"); }), "colormap: expected at least 2 colours, got 1");
+    EXPECT_EQ(told([] { Colormap(std::vector<Rgb8>()); }), "colormap: expected at least 2 colours, got 0");
+    EXPECT_EQ(told([] { parse_colormap("red,#12"); }).find("colormap: colour 2: "), 0u);
+    EXPECT_EQ(told([] { parse_colormap("red,"); }).find("colormap: colour 2: "), 0u);
+    EXPECT_EQ(told([] {
+                  Colormap(Array3f(Array3f::Dense{{0, 0, 0}, {0, 0, 1.5f}}));
+              }),
+              "colormap: expected colours of three numbers from 0 to 1, got (0, 0, 1.5) in row 1 of 2");
+    EXPECT_NE(told([] { Colormap(Array3f(Array3f::Dense{{0, 0, 0}, {0, no_value, 1}})); }), "accepted");
 }
 
 TEST(Colormap, RangeIsCutIntoEqualParts) {

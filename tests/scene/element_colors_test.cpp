@@ -310,6 +310,22 @@ TEST(ElementColors, StylesChooseMapRangeAndNan) {
     EXPECT_EQ(result.nan_color, (Rgba8{255, 0, 0, 255}));
 }
 
+// The values 0, 1 and 4 of 0 to 4 stand at 0, 1/4 and 1: entries 0, 64 and 255.
+TEST(ElementColors, OwnAndReversedMapsColourValues) {
+    MeshData mesh = strip();
+    mesh.scalars = {{"t", values({0, 1, no_value, 4})}};
+    mesh.style.colormap = parse_colormap("#000000,#ff0000");
+    EXPECT_EQ(colors(mesh, {}, DrawMode::points).colors,
+              (std::vector<Rgba8>{{0, 0, 0, 255}, {64, 0, 0, 255}, {128, 128, 128, 255}, {255, 0, 0, 255}}));
+    const std::string key = plan(mesh).key;
+    mesh.style.colormap = parse_colormap("#000000,#fe0000");
+    EXPECT_NE(plan(mesh).key, key);
+    mesh.style.colormap = Colormap::grey.reversed();
+    EXPECT_EQ(
+        colors(mesh, {}, DrawMode::points).colors,
+        (std::vector<Rgba8>{{255, 255, 255, 255}, {191, 191, 191, 255}, {255, 0, 255, 255}, {0, 0, 0, 255}}));
+}
+
 TEST(ElementColors, KeysChangeWithWhatCounts) {
     MeshData mesh = strip();
     mesh.L = labels({0, 1, 2, 3});

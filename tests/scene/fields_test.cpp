@@ -46,6 +46,8 @@ Value other_value(const Field& field) {
             return {std::string("some, text = '1'")};
         case FieldType::choice:
             return {field.choices[field.get(Settings{}).data == Value::Data(field.choices[0])]};
+        case FieldType::colormap:
+            return {std::string("#000080,#ffffff")};
     }
     return {};
 }
@@ -58,7 +60,9 @@ TEST(Fields, AreDocumentedOnce) {
         EXPECT_TRUE(names.insert(field.name).second) << field.name;
         EXPECT_GT(field.doc.size(), 15u) << field.name;
         EXPECT_EQ(field.doc.back(), '.') << field.name;
-        EXPECT_EQ(field.type == FieldType::choice, !field.choices.empty()) << field.name;
+        EXPECT_EQ(field.type == FieldType::choice || field.type == FieldType::colormap,
+                  !field.choices.empty())
+            << field.name;
         EXPECT_LT(field.min, field.max) << field.name;
         EXPECT_EQ(field.can_be_automatic, field.doc.find("utomatic: ") != std::string::npos) << field.name;
     }

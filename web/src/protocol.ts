@@ -3,7 +3,7 @@
 export interface Field {
   name: string;
   doc: string;
-  type: "boolean" | "integer" | "number" | "color" | "vector" | "text" | "choice";
+  type: "boolean" | "integer" | "number" | "color" | "vector" | "text" | "choice" | "colormap";
   unit?: string;
   auto?: boolean;
   min?: number;

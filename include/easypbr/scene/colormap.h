@@ -1,9 +1,13 @@
 // Colormaps: from a value to one of 256 colours.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/core/color.h"
@@ -11,17 +15,66 @@
 
 namespace easypbr {
 
+using ColorTable = std::array<Rgb8, 256>;
+
+/// A colour map: a built-in one, or a table of own colours. A small value; copies share the table.
+///
 /// viridis, plasma, inferno, magma and cividis are perceptually uniform; turbo is a smoother rainbow; grey is
 /// black to white in sRGB; coolwarm diverges from a light grey (Moreland 2009, "Diverging Color Maps for
 /// Scientific Visualization").
-enum class Colormap { viridis, plasma, inferno, magma, turbo, cividis, grey, coolwarm };
+class Colormap {
+  public:
+    static const Colormap viridis, plasma, inferno, magma, turbo, cividis, grey, coolwarm;
 
+    /// viridis.
+    constexpr Colormap() noexcept = default;
+    /// sRGB colours in [0, 1], one a row, evenly spaced: the first stands for the least value, the last for
+    /// the largest, and what is between is interpolated in sRGB. They are rounded to 8 bits; of more than 256
+    /// those at 256 even places count. Throws ArgumentError for fewer than two, and for other numbers.
+    explicit Colormap(const Array3f& colors);
+    explicit Colormap(const std::vector<Rgb8>& colors);
+
+    /// The same colours in the opposite order.
+    Colormap reversed() const;
+
+    /// The built-in map, or its reversed one.
+    bool is_grey() const { return *this == grey || *this == grey.reversed(); }
+    bool is_diverging() const { return *this == coolwarm || *this == coolwarm.reversed(); }
+
+    /// "viridis", "viridis_r", or the table's colours as "#000080,#ffffff": parse_colormap() gives the same
+    /// map.
+    std::string text() const;
+
+    bool operator==(const Colormap& other) const;
+
+  private:
+    friend Colormap parse_colormap(std::string_view text);
+    friend ColorTable color_table(const Colormap& colormap);
+
+    constexpr explicit Colormap(uint8_t built_in) noexcept : built_in_(built_in) {}
+
+    std::shared_ptr<const std::vector<Rgb8>> colors_;  ///< none: a built-in map
+    uint8_t built_in_ = 0;                             ///< its place in the order above
+    bool is_reversed_ = false;                         ///< of a built-in map
+};
+
+inline constinit const Colormap Colormap::viridis{uint8_t(0)}, Colormap::plasma{uint8_t(1)},
+    Colormap::inferno{uint8_t(2)}, Colormap::magma{uint8_t(3)}, Colormap::turbo{uint8_t(4)},
+    Colormap::cividis{uint8_t(5)}, Colormap::grey{uint8_t(6)}, Colormap::coolwarm{uint8_t(7)};
+
+/// The names of the built-in maps, then those of the reversed ones: "viridis_r".
 const std::vector<std::string>& colormap_names();
-/// Throws NameError with the nearest name.
-Colormap colormap_named(const std::string& name);
 
-using ColorTable = std::array<Rgb8, 256>;
-const ColorTable& color_table(Colormap colormap);
+/// A name of colormap_names(), in any case, or two or more colours (see parse_color()) with commas between
+/// them: "navy,#ffffff,#800000". Throws NameError with the nearest name, ArgumentError for what is wrong with
+/// a colour.
+Colormap parse_colormap(std::string_view text);
+inline Colormap colormap_named(const std::string& name) {
+    return parse_colormap(name);
+}
+
+/// The colours of 256 equal parts of the values, the least first.
+ColorTable color_table(const Colormap& colormap);
 
 /// The values that a colormap is spread over.
 struct ValueRange {

@@ -27,7 +27,8 @@ struct Value {
     bool operator==(const Value&) const = default;
 };
 
-enum class FieldType { boolean, integer, number, color, vector, text, choice };
+/// A colormap is a text of parse_colormap(); its choices are the names.
+enum class FieldType { boolean, integer, number, color, vector, text, choice, colormap };
 
 /// What a field of a struct is: of the settings, or of a light (scene/light_table.h).
 struct FieldInfo {
@@ -79,7 +80,7 @@ bool is_valid(const Field& field, const Value& value);
 Value checked(const FieldInfo& field, const Value& value, std::string_view owner = {});
 
 /// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto',
-/// 'follow'.
+/// 'follow', names and colours of colour maps.
 Value parse_value(const FieldInfo& field, std::string_view text);
 std::string to_text(const FieldInfo& field, const Value& value);
 

@@ -127,7 +127,7 @@ class Collector {
         const Array1f values = plan_values(*object.mesh, plan);
         ColorBar bar;
         bar.title = settings_.annotation.title.empty() ? title_of(plan) : settings_.annotation.title;
-        bar.range = value_range(values, plan.min, plan.max, plan.colormap == Colormap::coolwarm);
+        bar.range = value_range(values, plan.min, plan.max, plan.colormap.is_diverging());
         count_infinite(values, bar.range);
         std::ranges::transform(color_table(plan.colormap), bar.table.begin(), opaque);
         if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));

@@ -53,12 +53,11 @@ bool look_rows(const Image& image, ImageLook& look) {
     const bool one = image.channels() == 1;
     const float half = one ? (width - space) / 2 : width;
     if (one) {
-        const auto& names = colormap_names();
         ImGui::SetNextItemWidth(half);
-        if (ImGui::BeginCombo("##colormap", names[size_t(colormap_of(image, look))].c_str())) {
-            for (size_t i = 0; i < names.size(); ++i)
-                if (ImGui::Selectable(names[i].c_str())) {
-                    look.colormap = Colormap(i);
+        if (ImGui::BeginCombo("##colormap", colormap_of(image, look).text().c_str())) {
+            for (const std::string& name : colormap_names())
+                if (ImGui::Selectable(name.c_str())) {
+                    look.colormap = parse_colormap(name);
                     changed = true;
                 }
             ImGui::EndCombo();

@@ -48,6 +48,27 @@ bool edit_choice(const FieldInfo& field, std::string& value) {
     return changed;
 }
 
+/// A list of the names, and colours that are typed in.
+bool edit_colormap(const FieldInfo& field, std::string& value) {
+    bool changed = false;
+    if (!ImGui::BeginCombo("##value", value.c_str(), ImGuiComboFlags_HeightLarge)) return false;
+    std::string typed = value.starts_with('#') ? value : std::string();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (ImGui::InputTextWithHint("##colors", "#000080,#ffffff,#800000", &typed,
+                                 ImGuiInputTextFlags_EnterReturnsTrue)) {
+        value = typed;
+        changed = true;
+        ImGui::CloseCurrentPopup();
+    }
+    for (const std::string& name : field.choices)
+        if (ImGui::Selectable(name.c_str(), name == value)) {
+            value = name;
+            changed = true;
+        }
+    ImGui::EndCombo();
+    return changed;
+}
+
 bool edit_color(std::vector<double>& value) {
     float rgb[3] = {0, 0, 0};
     for (size_t i = 0; i < 3 && i < value.size(); ++i) rgb[i] = float(value[i]);
@@ -93,6 +114,7 @@ bool edit(const FieldInfo& field, Value::Data& data) {
     if (auto* list = std::get_if<std::vector<double>>(&data))
         return field.type == FieldType::color ? edit_color(*list) : edit_list(field, *list);
     auto& text = std::get<std::string>(data);
+    if (field.type == FieldType::colormap) return edit_colormap(field, text);
     if (!field.choices.empty()) return edit_choice(field, text);
     std::string typed = text;
     if (!ImGui::InputTextWithHint("##value", "none", &typed, ImGuiInputTextFlags_EnterReturnsTrue))
@@ -183,7 +205,7 @@ void field_row(const FieldInfo& field, const Value& value, const std::optional<V
     if (!known) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled("own");
-        if (field.type == FieldType::choice) shown.data = field.choices.front();
+        if (!field.choices.empty()) shown.data = field.choices.front();
         if (field.type == FieldType::color) shown.data = std::vector<double>{0.8, 0.8, 0.8};
         if (field.type == FieldType::number || field.type == FieldType::integer)
             shown.data = std::clamp(0.5, field.min, field.max);

@@ -6,6 +6,7 @@
 
 #include "easypbr/app/widgets.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/python/colormap.h"
 #include "easypbr/python/held.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
@@ -175,11 +176,10 @@ void bind_widgets(nb::module_& module) {
 }
 
 void show_image(SharedViewer& self, const std::string& name, const nb::object& array,
-                std::optional<float> min, std::optional<float> max,
-                const std::optional<std::string>& colormap) {
+                std::optional<float> min, std::optional<float> max, const nb::object& colormap) {
     Image image = to_image(array, "show_image");
     gui::ImageLook look{min, max, {}};
-    if (colormap) look.colormap = colormap_named(*colormap);
+    if (!colormap.is_none()) look.colormap = parse_colormap(colormap_text(colormap));
     self.run([&](Viewer& viewer) { viewer.show_image(name, std::move(image), look); });
 }
 

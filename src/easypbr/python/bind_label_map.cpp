@@ -7,6 +7,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/settings/label_map_io.h"
+#include "easypbr/python/colormap.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/text.h"
@@ -106,8 +107,8 @@ void construct_label_map(LabelMapHandle* self, const NamesLike& names, const Col
         std::make_shared<const LabelMap>(name, std::move(classes), unlabelled, unknown_from(unknown))};
 }
 
-nb::object colormap_to_numpy(const std::string& name) {
-    const ColorTable& table = color_table(colormap_named(name));
+nb::object colormap_to_numpy(nb::handle object) {
+    const ColorTable table = color_table(parse_colormap(colormap_text(object)));
     Image colors(1, int(table.size()), 3, PixelType::u8);
     for (size_t i = 0; i < table.size(); ++i) std::copy_n(table[i].data(), 3, colors.at<uint8_t>(0, int(i)));
     return to_numpy(std::move(colors)).attr("reshape")(-1, 3);
@@ -217,9 +218,11 @@ void bind_label_map(nb::module_& module) {
             [](const LabelMapHandle& m, int32_t label) { return m.map->find(label) != nullptr; },
             nb::arg("label"))
         .def("__repr__", map_text);
-    module.def("colormap", colormap_to_numpy, nb::arg("name"),
-               nb::sig("def colormap(name: str) -> numpy.ndarray"),
-               "The 256 x 3 uint8 sRGB colours of a colour map: viridis, plasma, ...");
+    module.def(
+        "colormap", colormap_to_numpy, nb::arg("name"),
+        nb::sig("def colormap(name: object) -> numpy.ndarray"),
+        "The 256 x 3 uint8 sRGB colours of a colour map: viridis, viridis_r (reversed), plasma, ..., one of "
+        "matplotlib's, colours as text, or n x 3 sRGB colours, floats from 0 to 1 or uint8.");
 }
 
 }  // namespace easypbr::python

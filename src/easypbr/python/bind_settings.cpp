@@ -4,6 +4,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/settings/settings_io.h"
+#include "easypbr/python/colormap.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/text.h"
@@ -46,6 +47,7 @@ Value::Data data_from_python(const FieldInfo& field, nb::handle given) {
         throw ArgumentError(fmt::format("setting '{}': None is no value{}", field.name,
                                         field.can_be_automatic ? "; auto infers it" : ""));
     }
+    if (field.type == FieldType::colormap) return colormap_text(given);
     const nb::object object = unboxed(given);
     if (nb::isinstance<nb::str>(object)) return nb::cast<std::string>(object);
     if (is_path(object)) return nb::cast<std::string>(nb::module_::import_("os").attr("fsdecode")(object));
@@ -62,7 +64,8 @@ nb::str automatic_text(const Automatic& automatic) {
 }
 
 const char* type_name(FieldType type) {
-    constexpr const char* names[] = {"boolean", "integer", "number", "color", "vector", "text", "choice"};
+    constexpr const char* names[] = {"boolean", "integer", "number", "color",
+                                     "vector",  "text",    "choice", "colormap"};
     return names[size_t(type)];
 }
 
@@ -101,11 +104,11 @@ Value value_from_python(const FieldInfo& field, nb::handle object) {
         return {automatic.value.value_or(Value::Data{}), Value::State::automatic,
                 automatic.value.has_value()};
     }
-    Value value{data_from_python(field, object)};
-    const auto* text = std::get_if<std::string>(&value.data);
-    if (text && field.can_be_automatic && (*text == "auto" || *text == "follow"))
-        return parse_value(field, *text);
-    return value;
+    if (nb::isinstance<nb::str>(object) && field.can_be_automatic) {
+        const std::string text = nb::cast<std::string>(object);
+        if (text == "auto" || text == "follow") return parse_value(field, text);
+    }
+    return {data_from_python(field, object)};
 }
 
 nb::object value_to_python(const FieldInfo& field, const Value& value) {

@@ -43,6 +43,8 @@ const char* type_name(FieldType type) {
             return "text";
         case FieldType::choice:
             return "choice";
+        case FieldType::colormap:
+            return "colormap";
     }
     return "text";
 }

@@ -201,12 +201,13 @@ class Planner {
                              .value_or(plan_.by == ColorBy::intensity ? Colormap::grey : Colormap::viridis);
         plan_.min = style(&Style::color_min);
         plan_.max = style(&Style::color_max);
-        const Vec3 missing = plan_.colormap == Colormap::grey ? Vec3(1, 0, 1) : Vec3(0.5f, 0.5f, 0.5f);
+        const Vec3 missing = plan_.colormap.is_grey() ? Vec3(1, 0, 1) : Vec3(0.5f, 0.5f, 0.5f);
         plan_.nan_color = style(&Style::nan_color).value_or(missing);
         decide_array(T_world_mesh, up);
         if (interpolates() && plan_.element == PerElement::vertex) plan_.source = ColorSource::values;
-        add_to_key(plan_.colormap, plan_.min.value_or(NAN), plan_.max.value_or(NAN), plan_.nan_color.x(),
-                   plan_.nan_color.y(), plan_.nan_color.z());
+        plan_.key += ' ' + plan_.colormap.text();
+        add_to_key(plan_.min.value_or(NAN), plan_.max.value_or(NAN), plan_.nan_color.x(), plan_.nan_color.y(),
+                   plan_.nan_color.z());
     }
 
     /// The array that the values come from, and the height's direction.

@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
@@ -81,33 +83,137 @@ ColorTable coolwarm() {
     return table;
 }
 
+/// Colours at so many even places from the first to the last, between them linear in sRGB.
+template <class Table>
+void sample_colors(const std::vector<Rgb8>& colors, Table& samples) {
+    const double last = double(colors.size() - 1);
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const double at = last * double(i) / double(samples.size() - 1);
+        const size_t below = std::min(size_t(at), colors.size() - 2);
+        for (size_t k = 0; k < 3; ++k)
+            samples[i][k] =
+                uint8_t(std::lround(std::lerp(colors[below][k], colors[below + 1][k], at - double(below))));
+    }
+}
+
+std::shared_ptr<const std::vector<Rgb8>> checked_colors(std::vector<Rgb8> colors) {
+    if (colors.size() < 2)
+        throw ArgumentError(fmt::format("colormap: expected at least 2 colours, got {}", colors.size()));
+    if (colors.size() > std::tuple_size_v<ColorTable>) {
+        std::vector<Rgb8> samples(std::tuple_size_v<ColorTable>);
+        sample_colors(colors, samples);
+        colors = std::move(samples);
+    }
+    return std::make_shared<const std::vector<Rgb8>>(std::move(colors));
+}
+
+std::vector<Rgb8> rgb8_rows(const Array3f& colors) {
+    std::vector<Rgb8> codes;
+    for (Eigen::Index i = 0; i < colors.rows(); ++i) {
+        const Vec3 color = colors.row(i);
+        if (!((color.array() >= 0).all() && (color.array() <= 1).all()))
+            throw ArgumentError(fmt::format(
+                "colormap: expected colours of three numbers from 0 to 1, got ({}, {}, {}) in row "
+                "{} of {}",
+                color[0], color[1], color[2], i, colors.rows()));
+        codes.push_back(to_rgb8(color));
+    }
+    return codes;
+}
+
+std::vector<Rgb8> parse_colors(std::string_view text) {
+    std::vector<Rgb8> colors;
+    for (size_t begin = 0; begin <= text.size();) {
+        const size_t end = std::min(text.find(',', begin), text.size());
+        std::string_view color = text.substr(begin, end - begin);
+        color.remove_prefix(std::min(color.find_first_not_of(' '), color.size()));
+        color.remove_suffix(color.size() - (color.find_last_not_of(' ') + 1));
+        try {
+            colors.push_back(to_rgb8(parse_color(color)));
+        } catch (const ArgumentError& error) {
+            throw ArgumentError(fmt::format("colormap: colour {}: {}", colors.size() + 1, error.what()));
+        }
+        begin = end + 1;
+    }
+    return colors;
+}
+
+constexpr std::array<const char*, 8> built_in_names = {"viridis", "plasma",  "inferno", "magma",
+                                                       "turbo",   "cividis", "grey",    "coolwarm"};
+
+bool same_letters(std::string_view a, std::string_view b) {
+    return std::ranges::equal(
+        a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
 }  // namespace
 
 const std::vector<std::string>& colormap_names() {
-    static const std::vector<std::string> names = {"viridis", "plasma",  "inferno", "magma",
-                                                   "turbo",   "cividis", "grey",    "coolwarm"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all(built_in_names.begin(), built_in_names.end());
+        for (const char* name : built_in_names) all.push_back(std::string(name) + "_r");
+        return all;
+    }();
     return names;
 }
 
-Colormap colormap_named(const std::string& name) {
-    const auto& names = colormap_names();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-        throw NameError(fmt::format("there is no colormap '{}'{}: expected {}", name,
-                                    did_you_mean(name, names), fmt::join(names, ", ")));
-    return Colormap(found - names.begin());
+Colormap::Colormap(const std::vector<Rgb8>& colors) : colors_(checked_colors(colors)) {}
+
+Colormap::Colormap(const Array3f& colors) : colors_(checked_colors(rgb8_rows(colors))) {}
+
+Colormap Colormap::reversed() const {
+    if (colors_) return Colormap(std::vector<Rgb8>(colors_->rbegin(), colors_->rend()));
+    Colormap other = *this;
+    other.is_reversed_ = !is_reversed_;
+    return other;
 }
 
-const ColorTable& color_table(Colormap colormap) {
-    static const std::array<ColorTable, 8> tables = {parse(viridis_table),
-                                                     parse(plasma_table),
-                                                     parse(inferno_table),
-                                                     parse(magma_table),
-                                                     parse(turbo_table),
-                                                     parse(cividis_table),
-                                                     grey(),
-                                                     coolwarm()};
-    return tables[size_t(colormap)];
+bool Colormap::operator==(const Colormap& other) const {
+    if (colors_ && other.colors_) return *colors_ == *other.colors_;
+    return !colors_ && !other.colors_ && built_in_ == other.built_in_ && is_reversed_ == other.is_reversed_;
+}
+
+std::string Colormap::text() const {
+    if (!colors_) return colormap_names()[built_in_ + (is_reversed_ ? built_in_names.size() : 0)];
+    std::string text;
+    for (const Rgb8& color : *colors_)
+        text += fmt::format("{}#{:02x}{:02x}{:02x}", text.empty() ? "" : ",", color[0], color[1], color[2]);
+    return text;
+}
+
+Colormap parse_colormap(std::string_view text) {
+    const auto& names = colormap_names();
+    const auto found =
+        std::ranges::find_if(names, [&](const auto& name) { return same_letters(name, text); });
+    if (found != names.end()) {
+        const size_t place = size_t(found - names.begin()), count = built_in_names.size();
+        const Colormap map{uint8_t(place % count)};
+        return place < count ? map : map.reversed();
+    }
+    if (text.starts_with('#') || text.find(',') != text.npos) return Colormap(parse_colors(text));
+    throw NameError(
+        fmt::format("there is no colormap '{}'{}: expected {}, one of these with _r behind it (reversed), or "
+                    "colours such as "
+                    "'#000080,#ffffff,#800000'",
+                    text, did_you_mean(text, names), fmt::join(built_in_names, ", ")));
+}
+
+ColorTable color_table(const Colormap& colormap) {
+    static const std::array<ColorTable, built_in_names.size()> tables = {parse(viridis_table),
+                                                                         parse(plasma_table),
+                                                                         parse(inferno_table),
+                                                                         parse(magma_table),
+                                                                         parse(turbo_table),
+                                                                         parse(cividis_table),
+                                                                         grey(),
+                                                                         coolwarm()};
+    ColorTable table;
+    if (colormap.colors_)
+        sample_colors(*colormap.colors_, table);
+    else
+        table = tables[colormap.built_in_];
+    if (colormap.is_reversed_) std::ranges::reverse(table);
+    return table;
 }
 
 }  // namespace easypbr

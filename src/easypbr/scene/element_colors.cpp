@@ -133,9 +133,8 @@ ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan) {
     Array1f values = plan_values(mesh, plan);
     if (values.empty()) return result;
 
-    result.range = value_range(values, plan.min, plan.max, plan.colormap == Colormap::coolwarm);
-    std::transform(color_table(plan.colormap).begin(), color_table(plan.colormap).end(), result.table.begin(),
-                   opaque);
+    result.range = value_range(values, plan.min, plan.max, plan.colormap.is_diverging());
+    std::ranges::transform(color_table(plan.colormap), result.table.begin(), opaque);
     result.nan_color = opaque(to_rgb8(plan.nan_color));
     values = bounded(values, result.range);
     if (element_of(mesh, values.rows()) != plan.element) values = values_of_vertices(mesh, values);

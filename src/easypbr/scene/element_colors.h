@@ -31,7 +31,7 @@ struct ColorPlan {
     bool exact = false;
 
     std::string scalar;  ///< name of the scalars
-    Colormap colormap = Colormap::viridis;
+    Colormap colormap;
     std::optional<float> min, max;  ///< nothing: from the values
     Vec3 nan_color{0.5f, 0.5f, 0.5f};
     Eigen::Vector4d height = Eigen::Vector4d::Zero();  ///< product with (x, y, z, 1) of a vertex

@@ -11,6 +11,7 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/auto.h"
+#include "easypbr/scene/colormap.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::detail {
@@ -49,6 +50,10 @@ inline Value::Data to_data(const std::vector<double>& value) {
     return value;
 }
 
+inline Value::Data to_data(const Colormap& value) {
+    return value.text();
+}
+
 template <class Scalar, int Rows>
 Value::Data to_data(const Eigen::Matrix<Scalar, Rows, 1>& value) {
     std::vector<double> numbers;
@@ -78,6 +83,10 @@ inline void from_data(const Value::Data& data, std::string& value) {
 }
 inline void from_data(const Value::Data& data, std::vector<double>& value) {
     value = std::get<std::vector<double>>(data);
+}
+
+inline void from_data(const Value::Data& data, Colormap& value) {
+    value = parse_colormap(std::get<std::string>(data));
 }
 
 template <class Scalar, int Rows>
@@ -177,6 +186,9 @@ void describe(FieldInfo& field) {
     } else if constexpr (std::is_enum_v<T>) {
         field.type = FieldType::choice;
         field.choices = enum_names<T>();
+    } else if constexpr (std::is_same_v<T, Colormap>) {
+        field.type = FieldType::colormap;
+        field.choices = colormap_names();
     } else if constexpr (std::is_same_v<T, std::string>) {
         field.type = FieldType::text;
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {

@@ -12,6 +12,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/colormap.h"
 #include "easypbr/scene/settings.h"
 #include "easypbr/scene/synonyms.h"
 
@@ -107,6 +108,9 @@ std::string describe_expected(const FieldInfo& field) {
             return "a text" + or_auto;
         case FieldType::choice:
             return fmt::format("one of {}", fmt::join(field.choices, ", ")) + or_auto;
+        case FieldType::colormap:
+            return "a colour map: a name such as 'viridis', or colours such as '#000080,#ffffff,#800000'" +
+                   or_auto;
     }
     return {};
 }
@@ -162,6 +166,15 @@ bool is_allowed(const FieldInfo& field, const std::vector<double>& numbers) {
                        [&](double number) { return is_allowed(field, number); });
 }
 
+bool is_colormap(const std::string& text) {
+    try {
+        parse_colormap(text);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 bool is_allowed(const FieldInfo& field, const Value::Data& data) {
     switch (field.type) {
         case FieldType::boolean:
@@ -182,6 +195,10 @@ bool is_allowed(const FieldInfo& field, const Value::Data& data) {
             const auto* text = std::get_if<std::string>(&data);
             return text &&
                    std::find(field.choices.begin(), field.choices.end(), *text) != field.choices.end();
+        }
+        case FieldType::colormap: {
+            const auto* text = std::get_if<std::string>(&data);
+            return text && is_colormap(*text);
         }
     }
     return false;
@@ -229,7 +246,8 @@ Value checked(const FieldInfo& field, const Value& value, std::string_view owner
     const bool has_data = value.state == Value::State::given || value.latched;
     if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value, owner);
     if (!has_data) return {{}, value.state};
-    if (field.type == FieldType::color && std::holds_alternative<std::string>(value.data)) {
+    const bool is_read = field.type == FieldType::color || field.type == FieldType::colormap;
+    if (is_read && std::holds_alternative<std::string>(value.data)) {
         Value parsed = parse_value(field, std::get<std::string>(value.data));
         if (parsed.state != Value::State::given) reject(field, value, owner);
         parsed.state = value.state;

@@ -88,10 +88,6 @@ const std::vector<std::string>& enum_names<Corner>() {
     static const std::vector<std::string> names = {"top_left", "top_right", "bottom_left", "bottom_right"};
     return names;
 }
-template <>
-const std::vector<std::string>& enum_names<Colormap>() {
-    return colormap_names();
-}
 
 }  // namespace detail
 
@@ -422,7 +418,9 @@ void add_style(Table& table) {
         "material");
     add("scalar", &Style::scalar, "Name of the scalar field that colours objects; implies color_by scalar.",
         "the first that was added");
-    add("colormap", &Style::colormap, "Colour map of scalars, heights and intensities.",
+    add("colormap", &Style::colormap,
+        "Colour map of scalars, heights and intensities: a name, or colours from the least to the largest "
+        "value.",
         "grey for intensities, else viridis");
     add("color_min", &Style::color_min,
         "Value mapped to the first colour of the colour map; lower values are clamped.",

@@ -8,6 +8,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/colormap.h"
 #include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/fields.h"
 
@@ -65,6 +66,14 @@ Value parse_color_value(const FieldInfo& field, std::string_view text) {
     }
 }
 
+Value parse_colormap_value(const FieldInfo& field, std::string_view text) {
+    try {
+        return {parse_colormap(text).text()};
+    } catch (const Error& error) {
+        throw ArgumentError(fmt::format("setting '{}': {}", field.name, error.what()));
+    }
+}
+
 std::string color_text(const std::vector<double>& numbers) {
     const Vec3 color = Vec3d(numbers[0], numbers[1], numbers[2]).cast<float>();
     const std::string hex = to_hex(color);
@@ -88,6 +97,8 @@ Value parse_value(const FieldInfo& field, std::string_view given) {
             return checked(field, value_or_text(parse_numbers(text, field.whole ? ",x" : ","), text));
         case FieldType::color:
             return parse_color_value(field, text);
+        case FieldType::colormap:
+            return parse_colormap_value(field, text);
         case FieldType::choice:
             return checked(field, {std::string(text)});
         case FieldType::text:
