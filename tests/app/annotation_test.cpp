@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "easypbr/app/font.h"
@@ -137,6 +138,37 @@ TEST(Ticks, AreInTheRangeAndNotTooMany) {
                 }
             }
         }
+}
+
+TEST(Annotation, TicksOfALogarithmicScaleArePowersOfTen) {
+    const auto texts = [](float min, float max, int most) {
+        std::vector<std::string> all;
+        for (const Tick& tick : ticks_of(ValueRange{min, max, min, max, ColorScale::log}, most))
+            all.push_back(tick.text);
+        return all;
+    };
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(texts(0.01f, 100, 8), (Texts{"0.01", "0.1", "1", "10", "100"}));
+    EXPECT_EQ(texts(0.02f, 99, 8), (Texts{"0.1", "1", "10"}));
+    EXPECT_EQ(texts(1e-8f, 1e-5f, 8), (Texts{"1e-8", "1e-7", "1e-6", "1e-5"}));
+    EXPECT_EQ(texts(1, 1e6f, 4), (Texts{"1e0", "1e2", "1e4", "1e6"}));
+    // Without two powers: those of a linear scale.
+    EXPECT_EQ(texts(2, 8, 4), (Texts{"2", "4", "6", "8"}));
+}
+
+// Of three bands each takes a third of the rows.
+TEST(Annotation, TheBarShowsBands) {
+    ColorBar bar = bar_of(Colormap::viridis, {0, 1, 0, 1});
+    bar.range.parts = color_parts(3);
+    std::ranges::transform(color_table(Colormap::viridis, 3), bar.table.begin(), opaque);
+    Image picture = plain(PixelType::u8);
+    draw_annotation({{}, {bar}}, {}, picture);
+    const Found found = find_bar(picture, bar);
+    ASSERT_GT(found.height, 100);
+    std::map<Rgb8, int> rows;
+    for (int row = 0; row < found.height; ++row) ++rows[pixel(picture, found.x, found.top + row)];
+    EXPECT_EQ(rows.size(), 3u);
+    for (const auto& [color, count] : rows) EXPECT_NEAR(count, found.height / 3.0, 1);  // whole rows
 }
 
 // Row r of H rows from the top is the part of the range around (H - r - 1/2) / H: that entry of 256.

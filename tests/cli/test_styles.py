@@ -13,6 +13,8 @@ import png
     ("colormap=virids", "(did you mean 'viridis'?)"),
     ("colormap=#000080", "expected at least 2 colours, got 1"),
     ("colormap=#000080,#12", "colour 2: "),
+    ("color_scale=logs", "(did you mean 'log'?)"),
+    ("color_steps=300", "0 to 256"),
     ("box.point_size=0", "expected a number of"),
     ("bix.flat=true", "--style: there is no object 'bix' (did you mean 'box'?): the files are called box"),
 ])

@@ -117,3 +117,47 @@ def test_names_without_matplotlib(monkeypatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)  # importing it is an ImportError
     with pytest.raises(easypbr.UnknownNameError, match="no colormap 'jet'"):
         easypbr.colormap("jet")
+
+
+def test_the_middle_of_a_logarithmic_scale_is_the_geometric_mean():
+    """Of 0.01 to 100: sqrt(0.01 * 100) = 1 has entry 128 of 256; where rounding decides, 127. What is not above 0 is missing."""
+    colors = drawn_colors([0.01, 1, 100, 0, -7], colormap="grey", color_scale="log", nan_color="#ff0000")
+    assert colors[0] == (0, 0, 0) and colors[2] == (255, 255, 255) and colors[3] == colors[4] == (255, 0, 0)
+    assert colors[1] in ((127, 127, 127), (128, 128, 128))
+
+
+@pytest.mark.parametrize("end", ["color_min", "color_max"])
+def test_a_logarithmic_range_above_zero(end):
+    with pytest.raises(easypbr.ArgumentError, match=f"expected {end} above 0, as color_scale is log, got 0"):
+        drawn_colors([1, 2], color_scale="log", **{end: 0})
+
+
+def test_steps_are_bands():
+    """Five bands of 0 to 1 have the entries 0, 64, 128, 191 and 255: k * 255 / 4, rounded."""
+    colors = drawn_colors([0, 0.19, 0.21, 0.5, 0.61, 0.79, 0.81, 1], colormap="grey", color_steps=5)
+    assert [red for red, *_ in colors] == [0, 0, 64, 128, 191, 191, 255, 255]
+
+
+def test_bands_of_a_surface_end_where_they_should():
+    """A square seen from the front, its value rising from 0 at the left to 1 at the right, in ten bands: each pixel has the
+    colour of its band, but for those within a hundredth of a band of a border, where rounding decides."""
+    mesh = Mesh(V=[[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], F=[[0, 1, 2], [0, 2, 3]])
+    mesh.add_scalar("t", [0, 1, 1, 0])
+    mesh.style.lit, mesh.style.colormap, mesh.style.color_steps = False, "grey", 10
+    scene = Scene()
+    scene.show(mesh, "square")
+    camera = {"projection": "orthographic", "ortho_height": 3.0, "azimuth_deg": 0, "elevation_deg": 0}
+    picture = Viewer((200, 150), {"camera": camera}, scene).render(samples=1)
+    x = (np.arange(200) + 0.5 - 100) * 3 / 150
+    t = (x + 1) / 2 * 10
+    inside = (np.abs(x) < 0.999) & (np.abs(t - np.rint(t)) > 0.01)
+    expected = np.rint(np.clip(np.floor(t), 0, 9) * 255 / 9)
+    assert inside.sum() > 90
+    assert (picture[75, inside, 0] == expected[inside]).all()
+
+
+@pytest.mark.parametrize("name, value", [("color_scale", "logarithm"), ("color_steps", 257), ("color_steps", -1), ("color_steps", 2.5)])
+def test_bad_scales_and_steps_are_named(name, value):
+    mesh = Mesh()
+    with pytest.raises(easypbr.ArgumentError, match=f"style.{name}.*expected"):
+        setattr(mesh.style, name, value)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 #include <ranges>
+#include <set>
 
 #include "easypbr/core/error.h"
 
@@ -120,6 +121,61 @@ TEST(Colormap, ATableIsAMapOfTheSameTable) {
     std::vector<Rgb8> many(511, Rgb8{9, 9, 9});
     for (size_t i = 0; i < 256; ++i) many[2 * i] = table[i];
     EXPECT_EQ(color_table(Colormap(many)), table);
+}
+
+// The middle of 1 to 100 on a logarithmic scale is their geometric mean, 10.
+TEST(ColorScale, LogarithmsAreSpreadEvenly) {
+    const ValueRange range = value_range(values({1, 100, 0, -3, no_value}), {}, {}, false, ColorScale::log);
+    EXPECT_EQ(range.min, 1);
+    EXPECT_EQ(range.max, 100);
+    EXPECT_EQ(color_index(1, range), 0);
+    EXPECT_EQ(color_index(10, range), 128);
+    EXPECT_EQ(color_index(100, range), 255);
+    EXPECT_EQ(color_index(0.5f, range), 0);
+    EXPECT_EQ(color_index(inf, range), 255);
+    for (const float missing : {0.0f, -1.0f, -inf, no_value}) EXPECT_EQ(color_index(missing, range), -1);
+    // The centre of each part, so that rounding of the value decides nothing.
+    for (int i = 0; i < 256; ++i) EXPECT_EQ(color_index(float(std::pow(100.0, (i + 0.5) / 256)), range), i);
+    // No such value, and one of them: it is in the middle, half a decade from both ends.
+    const ValueRange none = automatic_range(values({0, -1}), false, ColorScale::log);
+    EXPECT_EQ(std::pair(none.min, none.max), std::pair(1.0f, 10.0f));
+    const ValueRange one = automatic_range(values({5, 0}), false, ColorScale::log);
+    EXPECT_NEAR(one.max / one.min, 10, 1e-5);  // float32
+    EXPECT_NEAR(color_index(5, one), 128, 1);
+}
+
+TEST(ColorScale, EndsOfALogarithmicRangeAreAboveZero) {
+    const Array1f data = values({1, 100});
+    for (const float end : {0.0f, -1.0f}) {
+        EXPECT_THROW(value_range(data, end, {}, false, ColorScale::log), ArgumentError);
+        EXPECT_THROW(value_range(data, {}, end, false, ColorScale::log), ArgumentError);
+        EXPECT_NO_THROW(value_range(data, end, {}));
+    }
+    EXPECT_EQ(value_range(data, 0.1f, 1e3f, false, ColorScale::log).min, 0.1f);
+}
+
+// Bands of whole entries: 10 bands of 25, then the last colour again.
+TEST(Colormap, StepsAreEqualBands) {
+    const ColorTable whole = color_table(Colormap::grey), bands = color_table(Colormap::grey, 10);
+    EXPECT_EQ(color_parts(10), 250);
+    std::set<Rgb8> colors(bands.begin(), bands.end());
+    EXPECT_EQ(colors.size(), 10u);
+    for (size_t i = 0; i < 256; ++i) {
+        const size_t band = std::min<size_t>(i / 25, 9);
+        EXPECT_EQ(bands[i][0], std::lround(double(band) * 255 / 9)) << i;
+    }
+    ValueRange range{0, 1, 0, 1};
+    range.parts = color_parts(10);
+    // A value just above and just below the border of two bands: they differ by one band.
+    for (int band = 1; band < 10; ++band) {
+        EXPECT_EQ(color_index(float(band) / 10 + 1e-5f, range) / 25, band);
+        EXPECT_EQ(color_index(float(band) / 10 - 1e-5f, range) / 25, band - 1);
+    }
+    EXPECT_EQ(color_index(2, range), 249);
+    EXPECT_EQ(color_table(Colormap::grey, 0), whole);
+    EXPECT_EQ(color_parts(0), 256);
+    EXPECT_EQ(color_table(Colormap::grey, 256), whole);
+    EXPECT_EQ(color_table(Colormap::grey, 1)[7], whole[128]);
 }
 
 TEST(Colormap, BadColoursAreNamed) {

@@ -326,6 +326,34 @@ TEST(ElementColors, OwnAndReversedMapsColourValues) {
         (std::vector<Rgba8>{{255, 255, 255, 255}, {191, 191, 191, 255}, {255, 0, 255, 255}, {0, 0, 0, 255}}));
 }
 
+// 10 is in the middle of 1 and 100; 0 and -5 have no logarithm.
+TEST(ElementColors, LogarithmicScalesTakeValuesBelowZeroAsMissing) {
+    MeshData mesh = strip();
+    mesh.scalars = {{"t", values({1, 10, 0, 100})}};
+    mesh.style.colormap = Colormap::grey;
+    mesh.style.nan_color = Vec3(1, 0, 0);
+    const std::string key = plan(mesh).key;
+    mesh.style.color_scale = ColorScale::log;
+    EXPECT_NE(plan(mesh).key, key);
+    EXPECT_EQ(
+        colors(mesh, {}, DrawMode::points).colors,
+        (std::vector<Rgba8>{{0, 0, 0, 255}, {128, 128, 128, 255}, {255, 0, 0, 255}, {255, 255, 255, 255}}));
+    EXPECT_TRUE(std::isnan(colors(mesh).values(2)));
+    mesh.style.color_min = -5.0f;
+    EXPECT_THROW(colors(mesh), ArgumentError);
+}
+
+// Two bands of 0 to 4: below 2 the first colour, from 2 on the last.
+TEST(ElementColors, StepsAreBandsOfOneColour) {
+    MeshData mesh = strip();
+    mesh.scalars = {{"t", values({0, 1.99f, 2, 4})}};
+    mesh.style.colormap = Colormap::grey;
+    mesh.style.color_steps = 2;
+    EXPECT_EQ(
+        colors(mesh, {}, DrawMode::points).colors,
+        (std::vector<Rgba8>{{0, 0, 0, 255}, {0, 0, 0, 255}, {255, 255, 255, 255}, {255, 255, 255, 255}}));
+}
+
 TEST(ElementColors, KeysChangeWithWhatCounts) {
     MeshData mesh = strip();
     mesh.L = labels({0, 1, 2, 3});

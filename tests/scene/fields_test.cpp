@@ -95,7 +95,7 @@ TEST(Fields, AreComplete) {
         {"splats", 6},
         {"tonemap", 3},
         {"material", 4 + 19 + 7 + 1},
-        {"style", 25},
+        {"style", 27},
         {"points", 1},
         {"clip", 2},
         {"annotation", 5},

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,32 +77,58 @@ inline Colormap colormap_named(const std::string& name) {
 /// The colours of 256 equal parts of the values, the least first.
 ColorTable color_table(const Colormap& colormap);
 
+/// So many bands of equal width, of evenly chosen colours of the map from its first to its last; the middle
+/// one for a single band, and for 0 the map itself. Entries from color_parts() on repeat the last band.
+ColorTable color_table(const Colormap& colormap, int steps);
+/// Parts that the values are cut into: 256, or for bands the largest multiple of their number.
+inline int color_parts(int steps) {
+    return steps > 0 ? steps * (256 / steps) : 256;
+}
+
+/// How values are spread over a colour map: themselves, or their logarithms.
+enum class ColorScale { linear, log };
+
 /// The values that a colormap is spread over.
 struct ValueRange {
-    float min = 0, max = 1;            ///< of the first and the last colour; min < max
-    float data_min = 0, data_max = 1;  ///< of all finite values
+    float min = 0, max = 1;                 ///< of the first and the last colour; min < max
+    float data_min = 0, data_max = 1;       ///< of all finite values that have a place on the scale
+    ColorScale scale = ColorScale::linear;  ///< log: min is above 0
+    int parts = 256;                        ///< of the scale, each of one colour: color_parts()
 
     bool clips_below() const { return data_min < min; }
     bool clips_above() const { return data_max > max; }
 };
 
-/// Place in the table of 256 colours: the range is cut into 256 equal parts; what is outside has the nearest
-/// end's colour. -1 for NaN. Shaders compute the same.
-inline int color_index(float value, const ValueRange& range) {
-    if (std::isnan(value)) return -1;
-    const float t = (value - range.min) / (range.max - range.min);
-    return t >= 1 ? 255 : t > 0 ? int(t * 256) : 0;
+/// 0 for the range's minimum, 1 for its maximum. NaN for NaN, and on a logarithmic scale for what is not
+/// above 0.
+template <class Real>
+Real place_on_scale(Real value, const ValueRange& range) {
+    if (range.scale == ColorScale::linear)
+        return (value - Real(range.min)) / (Real(range.max) - Real(range.min));
+    if (!(value > 0)) return std::numeric_limits<Real>::quiet_NaN();
+    const double low = std::log10(double(range.min)), high = std::log10(double(range.max));
+    return Real((std::log10(double(value)) - low) / (high - low));
 }
 
-/// The range of finite values: all of them, unless the central 98 percent take less than a third of it; then
-/// outliers would leave the rest hardly any colours, and the range is that of the 1st to the 99th percentile
-/// (of up to 2^18 evenly chosen values). `diverging` ranges that hold 0 reach as far below it as above, so
-/// that 0 has the middle colour. One single value is in the middle; 0 to 1 when there is no finite value.
-ValueRange automatic_range(const Array1f& values, bool diverging = false);
+/// Place in the table of 256 colours: the range is cut into equal parts; what is outside has the nearest
+/// end's colour. -1 for what has no place. Shaders compute the same.
+inline int color_index(float value, const ValueRange& range) {
+    const float t = place_on_scale(value, range);
+    if (std::isnan(t)) return -1;
+    return t >= 1 ? range.parts - 1 : t > 0 ? int(t * float(range.parts)) : 0;
+}
+
+/// The range of finite values, on a logarithmic scale of those above 0: all of them, unless the central 98
+/// percent take less than a third of it; then outliers would leave the rest hardly any colours, and the range
+/// is that of the 1st to the 99th percentile (of up to 2^18 evenly chosen values). `diverging` ranges that
+/// hold 0 reach as far below it as above, so that 0 has the middle colour. One single value is in the middle;
+/// 0 to 1, or 1 to 10, when there is no such value.
+ValueRange automatic_range(const Array1f& values, bool diverging = false,
+                           ColorScale scale = ColorScale::linear);
 
 /// As far as they are given, `min` and `max` replace the automatic range's. Throws ArgumentError when the
-/// result is empty.
+/// result is empty, and for an end of a logarithmic scale that is not above 0.
 ValueRange value_range(const Array1f& values, std::optional<float> min, std::optional<float> max,
-                       bool diverging = false);
+                       bool diverging = false, ColorScale scale = ColorScale::linear);
 
 }  // namespace easypbr

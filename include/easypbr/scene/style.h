@@ -42,7 +42,9 @@ struct Style {
     Override<Colormap> colormap;   ///< automatic: grey for intensities, else viridis
     Override<float> color_min;  ///< value of the first colour; automatic: the minimum or the 1st percentile
     Override<float> color_max;  ///< value of the last colour; automatic: the maximum or the 99th percentile
-    Override<Vec3> nan_color;   ///< of missing values; automatic: grey, or magenta with the colour map grey
+    Override<ColorScale> color_scale;  ///< automatic: linear
+    Override<int> color_steps;         ///< bands of one colour each, 0 to 256; 0, also automatic: continuous
+    Override<Vec3> nan_color;  ///< of missing values; automatic: grey, or magenta with the colour map grey
 };
 
 }  // namespace easypbr

@@ -127,13 +127,14 @@ class Collector {
         const Array1f values = plan_values(*object.mesh, plan);
         ColorBar bar;
         bar.title = settings_.annotation.title.empty() ? title_of(plan) : settings_.annotation.title;
-        bar.range = value_range(values, plan.min, plan.max, plan.colormap.is_diverging());
+        bar.range = plan_range(values, plan);
         count_infinite(values, bar.range);
-        std::ranges::transform(color_table(plan.colormap), bar.table.begin(), opaque);
+        bar.table = plan_table(plan);
         if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));
         const auto same = [&](const Shared& other) {
             return other.bar.title == bar.title && other.bar.range.min == bar.range.min &&
-                   other.bar.range.max == bar.range.max && other.bar.table == bar.table;
+                   other.bar.range.max == bar.range.max && other.bar.range.scale == bar.range.scale &&
+                   other.bar.range.parts == bar.range.parts && other.bar.table == bar.table;
         };
         const auto known = std::ranges::find_if(bars_, same);
         if (known == bars_.end())
@@ -232,6 +233,32 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
     std::vector<double> counts;
     for (double k = std::max(first(), last() - most + 1); k <= last(); ++k) counts.push_back(k);
     return written(counts, step, magnitude);
+}
+
+namespace {
+
+/// Powers of ten within the range, every n-th if there are more than `most`.
+std::vector<Tick> powers_of_ten(double min, double max, int most) {
+    const int first = int(std::ceil(std::log10(min) - 1e-6)), last = int(std::floor(std::log10(max) + 1e-6));
+    const int stride = std::max(1, (last - first + most) / most);
+    const bool plain = first >= -3 && last < 6;
+    std::vector<Tick> ticks;
+    for (int exponent = last; exponent >= first; exponent -= stride) {
+        const double value = std::pow(10.0, exponent);
+        ticks.push_back({value, plain ? fmt::format("{:.{}f}", value, std::max(0, -exponent))
+                                      : fmt::format("1e{}", exponent)});
+    }
+    std::ranges::reverse(ticks);
+    return ticks;
+}
+
+}  // namespace
+
+std::vector<Tick> ticks_of(const ValueRange& range, int most) {
+    if (range.scale == ColorScale::log)
+        if (auto ticks = powers_of_ten(range.min, range.max, std::max(1, most)); ticks.size() > 1)
+            return ticks;
+    return ticks_of(double(range.min), double(range.max), most);
 }
 
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {

@@ -201,7 +201,7 @@ struct BarLayout {
 };
 
 int tick_row(const BarLayout& layout, const ValueRange& range, double value) {
-    const double t = (value - range.min) / (double(range.max) - range.min);
+    const double t = place_on_scale(value, range);
     const int row = int(std::lround((1 - t) * layout.height - 0.5));
     return layout.top + std::clamp(row, 0, layout.height - 1);
 }
@@ -209,7 +209,8 @@ int tick_row(const BarLayout& layout, const ValueRange& range, double value) {
 void draw_bar(Pen& pen, const ColorBar& bar, const BarLayout& layout, int x, int y) {
     for (int row = 0; row < layout.height; ++row) {
         const float t = (float(layout.height - 1 - row) + 0.5f) / float(layout.height);
-        const Rgba8& color = bar.table[size_t(std::min(255, int(t * 256)))];
+        const Rgba8& color =
+            bar.table[size_t(std::min(bar.range.parts - 1, int(t * float(bar.range.parts))))];
         pen.canvas().fill({x, y + layout.top + row, layout.bar, 1}, rgb(color));
     }
     if (bar.range.clips_above()) draw_arrow(pen, x, y, layout.bar, layout.arrow, rgb(bar.table[255]), true);
@@ -246,7 +247,7 @@ ColorBar fitting(ColorBar bar, int room_y, int row) {
 }
 
 std::vector<Tick> ticks_within(const ValueRange& range, int height, int row) {
-    std::vector<Tick> ticks = ticks_of(range.min, range.max, std::max(2, height / (2 * row)));
+    std::vector<Tick> ticks = ticks_of(range, std::max(2, height / (2 * row)));
     if (height < least_rows * row && ticks.size() > 1) ticks.erase(ticks.begin(), ticks.end() - 1);
     return ticks;
 }

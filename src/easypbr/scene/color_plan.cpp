@@ -199,6 +199,8 @@ class Planner {
         plan_.exact = true;
         plan_.colormap = style(&Style::colormap)
                              .value_or(plan_.by == ColorBy::intensity ? Colormap::grey : Colormap::viridis);
+        plan_.scale = style(&Style::color_scale).value_or(ColorScale::linear);
+        plan_.steps = style(&Style::color_steps).value_or(0);
         plan_.min = style(&Style::color_min);
         plan_.max = style(&Style::color_max);
         const Vec3 missing = plan_.colormap.is_grey() ? Vec3(1, 0, 1) : Vec3(0.5f, 0.5f, 0.5f);
@@ -206,8 +208,8 @@ class Planner {
         decide_array(T_world_mesh, up);
         if (interpolates() && plan_.element == PerElement::vertex) plan_.source = ColorSource::values;
         plan_.key += ' ' + plan_.colormap.text();
-        add_to_key(plan_.min.value_or(NAN), plan_.max.value_or(NAN), plan_.nan_color.x(), plan_.nan_color.y(),
-                   plan_.nan_color.z());
+        add_to_key(plan_.scale, plan_.steps, plan_.min.value_or(NAN), plan_.max.value_or(NAN),
+                   plan_.nan_color.x(), plan_.nan_color.y(), plan_.nan_color.z());
     }
 
     /// The array that the values come from, and the height's direction.

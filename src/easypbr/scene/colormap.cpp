@@ -216,4 +216,16 @@ ColorTable color_table(const Colormap& colormap) {
     return table;
 }
 
+ColorTable color_table(const Colormap& colormap, int steps) {
+    const ColorTable whole = color_table(colormap);
+    if (steps <= 0) return whole;
+    const auto of_band = [&](int band) {
+        return whole[steps == 1 ? 128 : size_t(std::lround(band * 255.0 / (steps - 1)))];
+    };
+    ColorTable table;
+    const int per_band = 256 / steps;
+    for (int i = 0; i < 256; ++i) table[size_t(i)] = of_band(std::min(i / per_band, steps - 1));
+    return table;
+}
+
 }  // namespace easypbr

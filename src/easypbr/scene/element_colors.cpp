@@ -117,11 +117,39 @@ Array1i vertex_labels(const MeshData& mesh) {
     return element_of(mesh, mesh.L.rows()) == PerElement::face ? labels_of_vertices(mesh) : mesh.L;
 }
 
-Array1f plan_values(const MeshData& mesh, const ColorPlan& plan) {
+namespace {
+
+Array1f given_values(const MeshData& mesh, const ColorPlan& plan) {
     if (plan.by == ColorBy::scalar) return scalar_named(mesh, plan.scalar).values;
     if (plan.by == ColorBy::height) return heights(mesh.V, plan.height);
     if (plan.by == ColorBy::intensity) return mesh.I;
     return {};
+}
+
+/// NaN in place of what has no logarithm.
+Array1f above_zero(const Array1f& values) {
+    if (!(values.array() <= 0).any()) return values;
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    return Array1f::Dense((values.array() > 0).select(values.array(), none).matrix());
+}
+
+}  // namespace
+
+Array1f plan_values(const MeshData& mesh, const ColorPlan& plan) {
+    const Array1f values = given_values(mesh, plan);
+    return plan.scale == ColorScale::log ? above_zero(values) : values;
+}
+
+ValueRange plan_range(const Array1f& values, const ColorPlan& plan) {
+    ValueRange range = value_range(values, plan.min, plan.max, plan.colormap.is_diverging(), plan.scale);
+    range.parts = color_parts(plan.steps);
+    return range;
+}
+
+std::array<Rgba8, 256> plan_table(const ColorPlan& plan) {
+    std::array<Rgba8, 256> table;
+    std::ranges::transform(color_table(plan.colormap, plan.steps), table.begin(), opaque);
+    return table;
 }
 
 ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan) {
@@ -133,8 +161,8 @@ ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan) {
     Array1f values = plan_values(mesh, plan);
     if (values.empty()) return result;
 
-    result.range = value_range(values, plan.min, plan.max, plan.colormap.is_diverging());
-    std::ranges::transform(color_table(plan.colormap), result.table.begin(), opaque);
+    result.range = plan_range(values, plan);
+    result.table = plan_table(plan);
     result.nan_color = opaque(to_rgb8(plan.nan_color));
     values = bounded(values, result.range);
     if (element_of(mesh, values.rows()) != plan.element) values = values_of_vertices(mesh, values);

@@ -32,6 +32,8 @@ struct ColorPlan {
 
     std::string scalar;  ///< name of the scalars
     Colormap colormap;
+    ColorScale scale = ColorScale::linear;
+    int steps = 0;                  ///< bands; 0: continuous
     std::optional<float> min, max;  ///< nothing: from the values
     Vec3 nan_color{0.5f, 0.5f, 0.5f};
     Eigen::Vector4d height = Eigen::Vector4d::Zero();  ///< product with (x, y, z, 1) of a vertex
@@ -75,7 +77,11 @@ ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan);
 Array1i vertex_labels(const MeshData& mesh);
 
 /// The values that a plan maps to colours (scalars, heights or intensities), one for each element of the
-/// array they come from.
+/// array they come from. NaN for those that have no place on the plan's scale.
 Array1f plan_values(const MeshData& mesh, const ColorPlan& plan);
+
+/// The range and the colours of such values.
+ValueRange plan_range(const Array1f& values, const ColorPlan& plan);
+std::array<Rgba8, 256> plan_table(const ColorPlan& plan);
 
 }  // namespace easypbr

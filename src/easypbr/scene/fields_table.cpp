@@ -84,6 +84,11 @@ const std::vector<std::string>& enum_names<ColorBy>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<ColorScale>() {
+    static const std::vector<std::string> names = {"linear", "log"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<Corner>() {
     static const std::vector<std::string> names = {"top_left", "top_right", "bottom_left", "bottom_right"};
     return names;
@@ -428,6 +433,14 @@ void add_style(Table& table) {
     add("color_max", &Style::color_max,
         "Value mapped to the last colour of the colour map; higher values are clamped.",
         "the maximum, or the 99th percentile if outliers would take up most of the range", "", {-1e38, 1e38});
+    add("color_scale", &Style::color_scale,
+        "Scale of the values over the colour map; on a logarithmic one values that are not above 0 are "
+        "missing "
+        "values.",
+        "linear");
+    add("color_steps", &Style::color_steps,
+        "Number of bands of one colour each that the colour map is drawn in; 0 draws it continuously.", "0",
+        "", {0, 256});
     table.push_back(color("style.nan_color", EASYPBR_AT(style.nan_color),
                           "Colour of missing values (NaN). Automatic: the object's own value, else grey, or "
                           "magenta with the colour map grey."));

@@ -27,13 +27,24 @@ struct Extent {
     }
 };
 
-Extent finite_extent(const Array1f& values) {
+/// Whether a value counts for the range.
+bool has_place(float value, ColorScale scale) {
+    return std::isfinite(value) && (scale == ColorScale::linear || value > 0);
+}
+
+/// Distances along the scale are differences of these.
+double along(float value, ColorScale scale) {
+    return scale == ColorScale::linear ? double(value) : std::log10(double(value));
+}
+
+Extent finite_extent(const Array1f& values, ColorScale scale) {
     const size_t count = size_t(values.rows());
     std::vector<Extent> parts((count + palette_grain - 1) / palette_grain);
     parallel_chunks(count, palette_grain, [&](size_t begin, size_t end) {
         Extent& part = parts[begin / palette_grain];
         for (size_t i = begin; i < end; ++i)
-            if (const float value = values(Eigen::Index(i)); std::isfinite(value)) part.add({value, value});
+            if (const float value = values(Eigen::Index(i)); has_place(value, scale))
+                part.add({value, value});
     });
     Extent all;
     for (const Extent& part : parts) all.add(part);
@@ -41,11 +52,11 @@ Extent finite_extent(const Array1f& values) {
 }
 
 /// 1st and 99th percentile.
-Extent central_extent(const Array1f& values) {
+Extent central_extent(const Array1f& values, ColorScale scale) {
     const Eigen::Index step = (values.rows() + most_samples - 1) / most_samples;
     std::vector<float> samples;
     for (Eigen::Index i = 0; i < values.rows(); i += step)
-        if (std::isfinite(values(i))) samples.push_back(values(i));
+        if (has_place(values(i), scale)) samples.push_back(values(i));
     if (samples.empty()) return {};
     const auto at = [&](double part) {
         const auto place =
@@ -58,21 +69,35 @@ Extent central_extent(const Array1f& values) {
 
 /// So wide that it can be divided by, with what it held in the middle.
 void widen(ValueRange& range) {
+    if (range.scale == ColorScale::log) {
+        if (range.min < range.max) return;
+        const float half_decade = std::sqrt(10.0f);
+        range.min = std::max(range.min / half_decade, std::numeric_limits<float>::denorm_min());
+        range.max *= half_decade;
+        return;
+    }
     if (range.max - range.min > 1e-30f) return;
     const float half = std::max(0.5f, std::abs(range.min) * 1e-3f);
     range.min -= half;
     range.max += half;
 }
 
+void require_above_zero(const char* name, const std::optional<float>& end) {
+    if (end && !(*end > 0))
+        throw ArgumentError(
+            fmt::format("style: expected {} above 0, as color_scale is log, got {}", name, *end));
+}
+
 }  // namespace
 
-ValueRange automatic_range(const Array1f& values, bool diverging) {
-    const Extent all = finite_extent(values);
-    if (!(all.min <= all.max)) return {};
-    ValueRange range{all.min, all.max, all.min, all.max};
-    const Extent central = central_extent(values);
-    const double spread = double(central.max) - central.min;
-    if (spread > 0 && spread * 3 < double(all.max) - all.min) {
+ValueRange automatic_range(const Array1f& values, bool diverging, ColorScale scale) {
+    const Extent all = finite_extent(values, scale);
+    if (!(all.min <= all.max))
+        return scale == ColorScale::linear ? ValueRange() : ValueRange{1, 10, 1, 10, scale};
+    ValueRange range{all.min, all.max, all.min, all.max, scale};
+    const Extent central = central_extent(values, scale);
+    const double spread = along(central.max, scale) - along(central.min, scale);
+    if (spread > 0 && spread * 3 < along(all.max, scale) - along(all.min, scale)) {
         range.min = central.min;
         range.max = central.max;
     }
@@ -87,8 +112,12 @@ ValueRange automatic_range(const Array1f& values, bool diverging) {
 }
 
 ValueRange value_range(const Array1f& values, std::optional<float> min, std::optional<float> max,
-                       bool diverging) {
-    ValueRange range = automatic_range(values, diverging);
+                       bool diverging, ColorScale scale) {
+    if (scale == ColorScale::log) {
+        require_above_zero("color_min", min);
+        require_above_zero("color_max", max);
+    }
+    ValueRange range = automatic_range(values, diverging, scale);
     if (!min && !max) return range;
     if (min) range.min = *min;
     if (max) range.max = *max;

@@ -92,9 +92,9 @@ Texture coordinates_texture() {
     return texture;
 }
 
-/// A value's place in its table, from 0 to 1 within its range.
+/// A value's place in its table, from 0 to the part of the table that its range takes.
 float place_of(float value, const ValueRange& range) {
-    return std::clamp((value - range.min) * (1 / (range.max - range.min)), -farthest, farthest);
+    return std::clamp(place_on_scale(value, range) * (float(range.parts) / 256), -farthest, farthest);
 }
 
 /// Places of values at the vertices of lines; NaN stays so.
