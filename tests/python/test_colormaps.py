@@ -15,7 +15,7 @@ def drawn_colors(values, **style) -> list:
     cloud = Mesh()
     cloud.V = [[i, 0, 0] for i in range(len(values))]
     cloud.add_scalar("t", values)
-    for name, value in {"point_size": 15, "lit": False, **style}.items():
+    for name, value in {"point_size": 9, "lit": False, **style}.items():
         setattr(cloud.style, name, value)
     scene = Scene()
     scene.show(cloud, "cloud")
@@ -120,7 +120,8 @@ def test_names_without_matplotlib(monkeypatch):
 
 
 def test_the_middle_of_a_logarithmic_scale_is_the_geometric_mean():
-    """Of 0.01 to 100: sqrt(0.01 * 100) = 1 has entry 128 of 256; where rounding decides, 127. What is not above 0 is missing."""
+    """Of 0.01 to 100: sqrt(0.01 * 100) = 1 has entry 128 of 256; where rounding decides, 127. Zero and less are
+    missing values."""
     colors = drawn_colors([0.01, 1, 100, 0, -7], colormap="grey", color_scale="log", nan_color="#ff0000")
     assert colors[0] == (0, 0, 0) and colors[2] == (255, 255, 255) and colors[3] == colors[4] == (255, 0, 0)
     assert colors[1] in ((127, 127, 127), (128, 128, 128))
@@ -156,7 +157,9 @@ def test_bands_of_a_surface_end_where_they_should():
     assert (picture[75, inside, 0] == expected[inside]).all()
 
 
-@pytest.mark.parametrize("name, value", [("color_scale", "logarithm"), ("color_steps", 257), ("color_steps", -1), ("color_steps", 2.5)])
+@pytest.mark.parametrize("name, value", [
+    ("color_scale", "logarithm"), ("color_steps", 257), ("color_steps", -1), ("color_steps", 2.5),
+])
 def test_bad_scales_and_steps_are_named(name, value):
     mesh = Mesh()
     with pytest.raises(easypbr.ArgumentError, match=f"style.{name}.*expected"):
