@@ -80,7 +80,7 @@ def test_pyvista_s_words_are_known():
     above_color annotations pickable preference pbr user_matrix component copy_mesh backface_params show_vertices
     color_missing_with_nan interpolation vertex_color off_screen interactive cpos window_size show_bounds show_axes show_grid notebook
     jupyter_backend screenshot return_img eye_dome_lighting volume parallel_projection return_cpos anti_aliasing zoom ssao
-    hidden_line_removal transparent_background theme line_smoothing""".split()
+    hidden_line_removal transparent_background theme line_smoothing log_scale""".split()
     assert [word for word in words if _easypbr.synonym(word) is None] == []
 
 
