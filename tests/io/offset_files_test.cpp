@@ -3,6 +3,8 @@
 #include <string>
 
 #include "easypbr/core/file.h"
+#include "easypbr/geometry/place.h"
+#include "easypbr/geometry/primitives.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/scene.h"
 #include "io/ply_builder.h"
@@ -106,6 +108,25 @@ TEST(FarFiles, OffsetComesBackFromFilesThatWereSaved) {
     const auto& object = snapshot.objects.back();
     EXPECT_EQ(object.mesh->V, mesh.V());
     EXPECT_EQ(object.T_world_mesh.translation(), mesh.offset());
+}
+
+// The offset is the translation of a node in a GLB: of what is read from it every format and box has it
+// again.
+TEST(FarFiles, GlbKeepsMillimetresInOtherFormats) {
+    const TemporaryFolder folder;
+    write_file(folder / "far.ply", far_ply("binary_little_endian"));
+    Mesh(folder / "far.ply").save(folder / "far.glb");
+    const Mesh glb(folder / "far.glb");
+    for (const char* name : {"saved.ply", "saved.obj", "saved.npz", "saved.xyz"}) {
+        glb.save(folder / name);
+        // Half a spacing when the GLB was written, and half a one when its nodes were merged.
+        expect_grid(*Mesh(folder / name).snapshot(), name, 2 * tolerance);
+    }
+    EXPECT_LE((bounding_box(glb).min() - corner).cwiseAbs().maxCoeff(), 2 * tolerance);
+    Mesh moved = make_box();
+    moved.translate(corner);
+    moved.save(folder / "moved.ply");
+    EXPECT_LE((bounding_box(Mesh(folder / "moved.ply")).center() - corner).cwiseAbs().maxCoeff(), tolerance);
 }
 
 TEST(FarFiles, ChildrenWithOtherOffsetsAreSavedInPlace) {

@@ -218,5 +218,36 @@ TEST(Flatten, BringsDescendantsIntoTheFrameOfTheParent) {
     EXPECT_EQ(flatten(alone).V.data(), alone.V().data()) << "nothing to move: the same array";
 }
 
+// A pose holds what float32 cannot: 5,400,000.25 has spacings of half a metre there.
+TEST(Flatten, GetsAnOffsetWherePosesMoveFarAway) {
+    const Vec3d far(500000.125, 5400000.25, 312);
+    Mesh root, child(triangle("child"));
+    child.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(far)));
+    root.add_child(child);
+    const MeshData flat = flatten(root);
+    for (int i = 0; i < 3; ++i) {
+        const Vec3d wanted = far + child.V().row(i).transpose().cast<double>();
+        // V stays within 4 of zero, where float32 numbers are 2^-22 apart at most: half of it.
+        EXPECT_LE((flat.offset + flat.V.row(i).transpose().cast<double>() - wanted).cwiseAbs().maxCoeff(),
+                  std::exp2(-23.0));
+    }
+    EXPECT_LT(flat.V.cwiseAbs().maxCoeff(), 4);
+    // What is near keeps its bits, and so do float32 arrays that nothing moves.
+    child.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(1000, 0, 0)));
+    EXPECT_EQ(flatten(root).offset, Vec3d::Zero());
+    MeshData still = triangle();
+    still.V = Rows3{{5e6f, 0, 0}, {5e6f + 1, 0, 0}, {5e6f, 1, 0}};
+    EXPECT_EQ(flatten(Mesh(still)).offset, Vec3d::Zero());
+}
+
+TEST(Flatten, LosesAnOffsetThatAPoseTakesBack) {
+    MeshData data = triangle();
+    data.offset = Vec3d(500000, 5400000, 312);
+    Mesh mesh(data);
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-data.offset)));
+    const MeshData flat = flatten(mesh);
+    EXPECT_LT(flat.offset.norm() + flat.V.cwiseAbs().maxCoeff(), 10);
+}
+
 }  // namespace
 }  // namespace easypbr::merge_test

@@ -14,6 +14,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr {
 namespace {
@@ -216,6 +217,36 @@ bool all_have(Meshes meshes, Of&& of) {
                        [&](const MeshData& mesh) { return mesh.V.empty() || of(mesh); });
 }
 
+/// A node with vertices. T leads from its V to what is relative to the offset of the tree.
+struct PlacedNode {
+    std::shared_ptr<const MeshData> data;
+    Eigen::Affine3d T;
+};
+
+std::vector<PlacedNode> placed_nodes(const Mesh& mesh, const Vec3d& base) {
+    std::vector<PlacedNode> nodes;
+    for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d& T) {
+        if (!data->V.empty()) nodes.push_back({data, T * Eigen::Translation3d(data->offset - base)});
+    });
+    return nodes;
+}
+
+/// What is to be added to the offset of the tree, so that positions moved by poses lose nothing in float32.
+/// Zero where none is moved: the arrays are float32 already.
+Vec3d shift_of(const std::vector<PlacedNode>& nodes) {
+    const auto stays = [](const PlacedNode& node) { return node.T.matrix().isIdentity(0); };
+    if (std::ranges::all_of(nodes, stays)) return Vec3d::Zero();
+    std::vector<size_t> ends;
+    size_t count = 0;
+    for (const PlacedNode& node : nodes) ends.push_back(count += size_t(node.data->V.rows()));
+    return choose_offset(count, [&](size_t i) -> Vec3d {
+        const auto k = size_t(std::ranges::upper_bound(ends, i) - ends.begin());
+        const Array3f& V = nodes[k].data->V;
+        const auto row = V.rows() - Eigen::Index(ends[k] - i);
+        return nodes[k].T * V.row(row).transpose().cast<double>();
+    });
+}
+
 }  // namespace
 
 Array3f positions_from(const MeshData& mesh, const Vec3d& offset) {
@@ -275,17 +306,16 @@ Vec3d offset_of_tree(const Mesh& mesh) {
 }
 
 MeshData flatten(const Mesh& mesh) {
+    const Vec3d base = offset_of_tree(mesh);
+    const std::vector<PlacedNode> placed = placed_nodes(mesh, base);
+    const Vec3d shift = shift_of(placed);
     std::vector<MeshData> nodes;
-    const Vec3d offset = offset_of_tree(mesh);
-    for_each_node(mesh,
-                  [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d& T_parent_mesh) {
-                      if (data->V.empty()) return;
-                      const Eigen::Translation3d shift(data->offset - offset);
-                      nodes.push_back(transformed(*data, T_parent_mesh * shift));
-                      nodes.back().offset = offset;
-                      nodes.back().T_parent_mesh.setIdentity();
-                      nodes.back().children.clear();
-                  });
+    for (const PlacedNode& node : placed) {
+        nodes.push_back(transformed(*node.data, Eigen::Translation3d(-shift) * node.T));
+        nodes.back().offset = base + shift;
+        nodes.back().T_parent_mesh.setIdentity();
+        nodes.back().children.clear();
+    }
     MeshData whole = merged(nodes);
     const auto root = mesh.snapshot();
     if (!root->up.isZero()) whole.up = root->T_parent_mesh.linear() * root->up;

@@ -31,8 +31,9 @@ MeshData merged(std::span<const MeshData> meshes);
 /// The offset of the first node that has vertices: what the tree's other offsets are relative to.
 Vec3d offset_of_tree(const Mesh& mesh);
 
-/// The mesh and its descendants merged in the frame of the mesh's parent, without pose and children, with
-/// offset_of_tree() as offset. A single node with an identity pose keeps its arrays.
+/// The mesh and its descendants merged in the frame of the mesh's parent, without pose and children. The
+/// offset is offset_of_tree(), and more where poses move vertices so far that float32 would lose what matters
+/// (scene/offset.h). A single node with an identity pose keeps its arrays.
 MeshData flatten(const Mesh& mesh);
 
 }  // namespace easypbr
