@@ -50,6 +50,19 @@ def test_models_of_files_far_from_zero(boxes):
     assert np.abs(far.vertices).max() < 2000
 
 
+def test_georeferenced_glb_files(boxes, tmp_path):
+    """The offset of a GLB is the translation of a node."""
+    Mesh(boxes[1]).save(tmp_path / "far.glb")
+    local = without_offset(Mesh(tmp_path / "far.glb"))
+    # The box reaches 1 from its centre, to which the offset is rounded by 0.5 at most.
+    assert np.abs(vertices_of(local)).max() < 2
+    near, far = (trimesh.load(io.BytesIO(model_ply(path, 0.8)), file_type="ply", process=False)
+                 for path in (boxes[0], str(tmp_path / "far.glb")))
+    # float32 of 400 mm has spacings of 2^-15 mm; the shortest side has 200 mm: 1.5e-7 of it, at both of its ends.
+    np.testing.assert_allclose(far.extents, near.extents, rtol=1e-6)
+    assert np.abs(far.vertices).max() < 2000
+
+
 def test_surroundings_far_from_zero(tmp_path):
     x, y = (a.ravel() for a in np.meshgrid(*[np.linspace(-1, 1, 40)] * 2))
     means = np.stack([x, y, 0 * x], 1) + FAR

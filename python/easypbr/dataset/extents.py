@@ -9,12 +9,29 @@ from numpy.typing import NDArray
 from .._easypbr import Mesh
 
 
+_SAMPLES = 1024
+
+
 def without_offset(mesh: Mesh) -> Mesh:
     """The mesh with offsets of zero, its own and those of its children: as a scene places it alone, whose origin is the first
-    offset of a node with vertices."""
+    offset of a node with vertices. Poses of children that lead far from zero, as those of georeferenced GLB files, are brought
+    near by the rule that offsets of point files follow; not where the mesh has vertices of its own, which stay."""
     origin = next((np.array(node.offset) for node in _nodes(mesh) if len(node.V)), np.zeros(3))
     _move_offsets(mesh, np.zeros(3), origin)
+    if not len(mesh.V):
+        far = _offset_of(mesh)
+        for child in mesh.children:
+            T = child.T_parent_mesh
+            T[:3, 3] -= far
+            child.T_parent_mesh = T
     return mesh
+
+
+def _offset_of(mesh: Mesh) -> NDArray[Any]:
+    """What the offset of a point file with these vertices would be."""
+    samples = Mesh()
+    samples.V = np.concatenate([np.empty((0, 3)), *(V[:: -(-len(V) // _SAMPLES)] for V in _vertices_by_node(mesh, np.eye(4)))])
+    return np.array(samples.offset)
 
 
 def _nodes(mesh: Mesh) -> Iterator[Mesh]:

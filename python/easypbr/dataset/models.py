@@ -30,7 +30,7 @@ def model_ply(path: str, size: float) -> bytes:
     low, high = bounds(mesh)
     mesh.T_parent_mesh = np.diag([*[1000 * size / max(float((high - low).max()), 1e-12)] * 3, 1.0])
     mesh = mesh.merge()
-    columns = [mesh.V, mesh.N if len(mesh.N) == len(mesh.V) else vertex_normals(mesh.V, mesh.F)]
+    columns = [mesh.V + mesh.offset, mesh.N if len(mesh.N) == len(mesh.V) else vertex_normals(mesh.V, mesh.F)]
     names = ["float x", "float y", "float z", "float nx", "float ny", "float nz"]
     formats = ["%.6f"] * 6
     if len(mesh.C) == len(mesh.V):
