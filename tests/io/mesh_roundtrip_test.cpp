@@ -249,6 +249,30 @@ TEST(MeshFiles, ChildrenAreMergedInWorldSpace) {
     }
 }
 
+// Two faces at a right angle along an edge whose vertices the texture coordinates split: the normals of both
+// sides lie halfway between those of the faces.
+TEST(MeshFiles, SeamsOfTextureCoordinatesStaySmooth) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
+    mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {3, 5, 4}});
+    mesh.UV = Array2f(Array2f::Dense{{0, 0}, {1, 0}, {0, 1}, {0.5f, 0}, {1, 1}, {0, 0}});
+    mesh.source_vertex = Array1i(Array1i::Dense{{0}, {1}, {2}, {0}, {1}, {3}});
+    const Vec3 halfway = Vec3(0, 1, 1).normalized();
+    for (const char* name : {"m.obj", "m.ply", "m.npz"}) {
+        Mesh(mesh).save(folder / name);
+        const auto back = Mesh(folder / name).snapshot();
+        ASSERT_EQ(back->N.rows(), 6) << name;
+        for (const int corner : {back->F(0, 0), back->F(0, 1), back->F(1, 0), back->F(1, 2)})
+            // The angles of corners, which are the weights, are approximated to 1e-5.
+            EXPECT_LT((Vec3(back->N.row(corner)) - halfway).norm(), 1e-5f) << name << " " << corner;
+    }
+    // Without seams files need no normals.
+    mesh.source_vertex = Array1i(Array1i::Dense{{0}, {1}, {2}, {3}, {4}, {5}});
+    Mesh(mesh).save(folder / "m.ply");
+    EXPECT_TRUE(Mesh(folder / "m.ply").N().empty());
+}
+
 TEST(MeshFiles, ChildrenWithoutLabelsHaveNone) {
     const TemporaryFolder folder;
     MeshData labelled;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <span>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file_set.h"
@@ -20,6 +21,7 @@
 #include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/scene/merge.h"
+#include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
 namespace {
@@ -181,9 +183,32 @@ std::string encode(const MeshData& mesh, const fs::path& path, const std::string
     return encode_xyz(mesh, extension == "csv" ? ',' : ' ');
 }
 
+/// Whether vertices were split from one, as at seams of texture coordinates.
+bool has_split_vertices(const MeshData& mesh) {
+    if (mesh.source_vertex.empty()) return false;
+    std::vector<bool> seen(size_t(mesh.source_vertex.maxCoeff()) + 1);
+    return std::ranges::any_of(std::span(mesh.source_vertex.data(), size_t(mesh.source_vertex.size())),
+                               [&](int32_t source) {
+                                   const bool again = seen[size_t(source)];
+                                   seen[size_t(source)] = true;
+                                   return again;
+                               });
+}
+
+/// The mesh as one node, for a format that has no hierarchy. Files do not say which vertices count as one for
+/// smooth normals (source_vertex): where some do, the normals are written.
+MeshData flattened_for(const std::string& extension, const Mesh& mesh) {
+    MeshData flat = flatten(mesh);
+    const bool has_faces = extension == "obj" || extension == "ply" || extension == "npz";
+    if (has_faces && flat.N.empty() && !flat.F.empty() && !flat.style.flat.value_or(false) &&
+        has_split_vertices(flat))
+        flat.N = smooth_normals(flat);
+    return flat;
+}
+
 void save_obj(const Mesh& mesh, const fs::path& path) {
     const fs::path library = fs::path(path).replace_extension(".mtl");
-    const MeshData flat = flatten(mesh);
+    const MeshData flat = flattened_for("obj", mesh);
     warn_of_left_out(flat, path, "obj");
     const ObjText text = encode_obj(flat, library.filename().string(), fs::absolute(path).parent_path());
     FileSet files;
@@ -277,7 +302,7 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
         return save_glb(mesh, path);
     }
     if (extension == "obj") return save_obj(mesh, path);
-    const MeshData flat = flatten(mesh);
+    const MeshData flat = flattened_for(extension, mesh);
     warn_of_left_out(flat, path, extension);
     write_file(path, encode(flat, path, extension));
 }
