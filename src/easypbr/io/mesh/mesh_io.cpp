@@ -20,6 +20,7 @@
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/normals.h"
 
@@ -148,13 +149,23 @@ std::vector<std::string> textures_beside_ply(const MeshData& mesh) {
     return is_left_out ? std::vector<std::string>{"textures"} : std::vector<std::string>{};
 }
 
+/// What a format has for textures, where one is written; null: none is.
+const TextureMapping* texture_mapping(const MeshData& mesh, const std::string& extension) {
+    if (extension == "obj") return &obj_mapping();
+    const bool has_file = mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty();
+    return extension == "ply" && has_file ? &ply_mapping() : nullptr;
+}
+
 /// What of a mesh has no place in a format, beside faces and splats: names for a message.
 std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension) {
     if (extension == "glb") return left_out_of_gltf(mesh);
-    if (extension == "ply") return textures_beside_ply(mesh);
     if (extension == "npz") return {};
-    if (extension != "obj" && extension != "spz") return labels_and_scalars(mesh, true);
     std::vector<std::string> names;
+    if (extension == "ply") names = textures_beside_ply(mesh);
+    if (const TextureMapping* mapping = texture_mapping(mesh, extension))
+        std::ranges::move(left_out_mappings(*mapping, mesh), std::back_inserter(names));
+    if (extension == "ply") return names;
+    if (extension != "obj" && extension != "spz") return labels_and_scalars(mesh, true);
     if (extension == "spz" && !mesh.N.empty()) names.emplace_back("normals");
     if (extension == "spz" && !mesh.C.empty()) names.emplace_back("colours beside those of splats");
     if (extension == "spz" && !mesh.UV.empty()) names.emplace_back("texture coordinates");
@@ -196,13 +207,15 @@ bool has_split_vertices(const MeshData& mesh) {
 }
 
 /// The mesh as one node, for a format that has no hierarchy. Files do not say which vertices count as one for
-/// smooth normals (source_vertex): where some do, the normals are written.
+/// smooth normals (source_vertex): where some do, the normals are written. Texture transforms that a format
+/// does not have become part of the texture coordinates.
 MeshData flattened_for(const std::string& extension, const Mesh& mesh) {
     MeshData flat = flatten(mesh);
     const bool has_faces = extension == "obj" || extension == "ply" || extension == "npz";
     if (has_faces && flat.N.empty() && !flat.F.empty() && !flat.style.flat.value_or(false) &&
         has_split_vertices(flat))
         flat.N = smooth_normals(flat);
+    if (const TextureMapping* mapping = texture_mapping(flat, extension)) bake_uv_transforms(*mapping, flat);
     return flat;
 }
 

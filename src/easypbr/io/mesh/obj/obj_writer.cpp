@@ -10,6 +10,7 @@
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/tables/face_polygons.h"
+#include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -143,9 +144,10 @@ class MtlWriter {
         if (texture.path.empty() && !texture.image) return;
         text_ += keyword + option;
         if (texture.channel > 0) line(" -imfchan {}", "rgbm"[texture.channel]);
-        if (texture.wrap_u == Wrap::clamp) text_ += " -clamp on";
+        if (texture.wrap_u == Wrap::clamp && texture.wrap_v == Wrap::clamp) text_ += " -clamp on";
         const Mat3& M = texture.uv_transform;
-        if (!M.isIdentity(0)) line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
+        if (!M.isIdentity(0) && obj_mapping().has_transform(M))
+            line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
         line(" {}\n", texture.path.empty() ? name_of(texture.image, kind) : path_of(texture));
     }
 

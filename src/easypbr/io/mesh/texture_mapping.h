@@ -1,0 +1,31 @@
+// How textures lie on faces, in formats that have less for it than glTF.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "easypbr/scene/mesh_data.h"
+
+namespace easypbr::io {
+
+/// What a format has for the mapping of the textures that it refers to.
+struct TextureMapping {
+    std::vector<Texture Material::*> textures;
+    bool (*has_transform)(const Mat3& uv_transform);
+    bool (*has_wraps)(Wrap u, Wrap v);
+};
+
+/// OBJ: scales and offsets; images that repeat, or are clamped along both axes.
+const TextureMapping& obj_mapping();
+/// PLY: base colours that repeat.
+const TextureMapping& ply_mapping();
+
+/// Where the textures of a material share a transform that the format does not have, the texture coordinates
+/// of the material's faces are transformed instead. All stay as they are where a vertex would need two.
+void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh);
+
+/// What of the mapping has no place in the format: names for a message. Wraps count where coordinates leave
+/// the image.
+std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const MeshData& mesh);
+
+}  // namespace easypbr::io
