@@ -30,28 +30,28 @@ std::string path_from_folder(const std::string& image_path, const fs::path& fold
 }
 
 fs::path TextureLoader::find(const std::string& name) const {
+    // Files made on Windows separate folders by backslashes.
+    std::string separated = name;
+    std::replace(separated.begin(), separated.end(), '\\', '/');
     std::error_code ignored;
-    const fs::path named = folder_ / name;
-    if (fs::exists(named, ignored)) return named;
-    const fs::path beside = folder_ / fs::path(name).filename();
-    if (fs::exists(beside, ignored)) return beside;
+    for (const std::string& given : {name, separated})
+        for (const fs::path& path : {folder_ / given, folder_ / fs::path(given).filename()})
+            if (fs::exists(path, ignored)) return path;
     const std::string plain(without_comment(name));
-    return plain == name ? named : find(plain);
+    return plain == name ? folder_ / separated : find(plain);
 }
 
-Texture TextureLoader::load(std::string name) {
-    // Files made on Windows separate folders by backslashes.
-    std::replace(name.begin(), name.end(), '\\', '/');
-    if (const auto known = textures_.find(name); known != textures_.end()) return known->second;
+Texture TextureLoader::load(const std::string& name) {
+    const fs::path path = find(name);
+    if (const auto known = textures_.find(path.string()); known != textures_.end()) return known->second;
     Texture texture;
     try {
-        const fs::path path = find(name);
         texture.image = std::make_shared<const Image>(load_image(path));
         texture.path = path.string();
     } catch (const Error& error) {
         log_warning(fmt::format("texture left out: {}", error.what()));
     }
-    return textures_[name] = texture;
+    return textures_[path.string()] = texture;
 }
 
 }  // namespace easypbr::io

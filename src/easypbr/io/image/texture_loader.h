@@ -28,13 +28,13 @@ class TextureLoader {
     /// A texture with the named image, found under its path or, failing that, beside the mesh file under its
     /// bare name; where there is no such file, without_comment() is tried. Empty, with a warning in the log,
     /// when it is missing or damaged.
-    Texture load(std::string name);
+    Texture load(const std::string& name);
 
   private:
     fs::path find(const std::string& name) const;
 
     fs::path folder_;
-    std::map<std::string, Texture> textures_;
+    std::map<std::string, Texture> textures_;  ///< by path
 };
 
 }  // namespace easypbr::io
