@@ -186,6 +186,71 @@ TEST(MeshFiles, ObjWritesImagesThatNoFileHolds) {
     EXPECT_TRUE(fs::exists(folder / "my_m_base_color.png"));
 }
 
+TEST(MeshFiles, ObjImagesReplaceNoneOfOtherFiles) {
+    const TemporaryFolder folder;
+    const auto save = [&](const char* name, uint8_t value) {
+        MeshData mesh = random_mesh(3, 10);
+        mesh.materials.resize(1);
+        mesh.materials[0].base_color_texture.image = flat(value);
+        Mesh(mesh).save(folder / name);
+    };
+    const auto value_of = [&](const char* name) {
+        const Texture texture = Mesh(folder / name).snapshot()->materials.at(0).base_color_texture;
+        return texture ? int(texture.image->at<uint8_t>(1, 1)[0]) : -1;
+    };
+    save("car 1.obj", 10);
+    save("car_1.obj", 20);
+    EXPECT_EQ(value_of("car 1.obj"), 10);
+    EXPECT_EQ(value_of("car_1.obj"), 20);
+    // Saved again, each replaces its own.
+    save("car_1.obj", 30);
+    save("car 1.obj", 40);
+    EXPECT_EQ(value_of("car 1.obj"), 40);
+    EXPECT_EQ(value_of("car_1.obj"), 30);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 6);
+    // What lines of MTL take for something else is replaced in the images' names; image files with such names
+    // are found.
+    for (const char* name : {"a\\b.obj", "-n.obj", " lead.obj", "a #1.obj"}) {
+        save(name, 50);
+        EXPECT_EQ(value_of(name), 50) << name;
+    }
+    io::save_image(*flat(60), folder / "c\\d.png");
+    MeshData mesh = random_mesh(3, 10);
+    mesh.materials.resize(1);
+    mesh.materials[0].base_color_texture.path = (folder / "c\\d.png").string();
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_EQ(value_of("m.obj"), 60);
+}
+
+TEST(MeshFiles, ObjRefusesNamesThatNoLineHolds) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    Mesh(mesh).save(folder / "a\nb.obj");
+    fs::remove(folder / "a\nb.obj");
+    mesh.materials.resize(1);
+    EXPECT_THROW(Mesh(mesh).save(folder / "a\nb.obj"), ArgumentError);
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(MeshFiles, ObjWritesMaterialsThatAreTheSameOnce) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    Material red;
+    red.name = "red";
+    Material other = red, unnamed;
+    other.roughness = 0.25f;
+    mesh.materials = {red, red, other, unnamed};
+    mesh.parts = {{"a", 0, 5, 0}, {"b", 5, 5, 1}, {"c", 10, 5, 2}, {"d", 15, 5, 3}};
+    Mesh(mesh).save(folder / "m.obj");
+    const auto back = Mesh(folder / "m.obj").snapshot();
+    ASSERT_EQ(back->materials.size(), 3u);
+    EXPECT_EQ(back->materials[0].name, "red");
+    EXPECT_EQ(back->parts[0].face_count, 10);
+    EXPECT_EQ(back->materials[1].name, "red_2");
+    EXPECT_EQ(back->materials[1].roughness, 0.25f);
+    EXPECT_EQ(back->materials[2].name, "material");
+}
+
 TEST(MeshFiles, ObjImagesAppearWithItOrNotAtAll) {
     const TemporaryFolder folder;
     MeshData mesh = random_mesh(7, 300);

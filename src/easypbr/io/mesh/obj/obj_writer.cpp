@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <set>
 
+#include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
@@ -88,26 +90,41 @@ void append_faces(const MeshData& mesh, const FacePolygons& polygons, const Mesh
     });
 }
 
-/// Names as OBJ and MTL can hold them: one line, never empty, never the same twice.
-std::vector<std::string> material_names(const MeshData& mesh) {
-    std::vector<std::string> names;
-    for (const Material& material : mesh.materials) {
-        std::string name = material.name;
-        for (char& c : name)
-            if (std::isspace(static_cast<unsigned char>(c)) || c == '#' || c == '\\') c = '_';
-        if (name.empty() || std::find(names.begin(), names.end(), name) != names.end())
-            name += fmt::format("material_{}", names.size());
-        names.push_back(name);
-    }
-    return names;
+/// A name without what separates names, begins comments or continues lines.
+std::string plain_word(std::string name) {
+    for (char& c : name)
+        if (std::isspace(static_cast<unsigned char>(c)) || c == '#' || c == '\\') c = '_';
+    return name;
+}
+
+/// A file's name as it stands in a line. Throws ArgumentError for one that no line can hold.
+std::string name_in_line(const std::string& name) {
+    if (name.find('\n') != name.npos)
+        throw ArgumentError(fmt::format("OBJ: expected names of files without line breaks, got '{}'", name));
+    // A relative path begins with no blank and no '-'.
+    return name.starts_with('-') || name.starts_with(' ') || name.starts_with('\t') ? "./" + name : name;
+}
+
+/// The words of a text file, nothing where there is none.
+std::set<std::string> words_in_file(const fs::path& path) {
+    std::set<std::string> words;
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return words;
+    std::ifstream file(path);
+    for (std::string word; file >> word;) words.insert(word);
+    return words;
 }
 
 class MtlWriter {
   public:
-    /// `stem`: of the names of images that no file holds.
-    MtlWriter(const fs::path& folder, const std::string& stem) : folder_(folder), stem_(stem) {
-        for (char& c : stem_)
-            if (std::isspace(static_cast<unsigned char>(c)) || c == '#') c = '_';
+    /// `name`: of the MTL; images that no file holds are named after it. Files that are there stay, but for
+    /// the images of an MTL of that name.
+    MtlWriter(const fs::path& folder, const std::string& name)
+        : folder_(folder),
+          stem_(plain_word(fs::path(name).stem().string())),
+          own_(words_in_file(folder / name)) {
+        // Options begin with '-'.
+        if (stem_.starts_with('-')) stem_[0] = '_';
     }
 
     /// A name that a texture's file has is no one else's.
@@ -117,8 +134,27 @@ class MtlWriter {
             taken_.insert(path_of(*texture));
     }
 
-    void append(const Material& m, const std::string& name) {
-        line("newmtl {}\n", name);
+    /// The name of the material in the MTL, one line, never empty. Materials that are the same there share
+    /// it.
+    std::string add(const Material& m) {
+        body_.clear();
+        append(m);
+        const std::string plain = m.name.empty() ? "material" : plain_word(m.name);
+        std::string& name = materials_[{plain, body_}];
+        for (int i = 1; name.empty(); ++i) {
+            std::string free = i == 1 ? plain : fmt::format("{}_{}", plain, i);
+            if (!material_names_.insert(free).second) continue;
+            name = std::move(free);
+            text_ += fmt::format("newmtl {}\n{}", name, body_);
+        }
+        return name;
+    }
+
+    std::string take() { return std::move(text_); }
+    std::map<std::string, std::shared_ptr<const Image>> take_images() { return std::move(images_); }
+
+  private:
+    void append(const Material& m) {
         line("Kd {} {} {}\n", m.base_color.x(), m.base_color.y(), m.base_color.z());
         line("Ke {} {} {}\n", m.emissive.x(), m.emissive.y(), m.emissive.z());
         line("Pr {}\nPm {}\nd {}\nillum {}\n", m.roughness, m.metallic, m.opacity, m.unlit ? 0 : 2);
@@ -131,24 +167,20 @@ class MtlWriter {
             m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
     }
 
-    std::string take() { return std::move(text_); }
-    std::map<std::string, std::shared_ptr<const Image>> take_images() { return std::move(images_); }
-
-  private:
     template <class... Values>
     void line(fmt::format_string<Values...> format, Values&&... values) {
-        fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
+        fmt::format_to(std::back_inserter(body_), format, std::forward<Values>(values)...);
     }
 
     void map(const char* keyword, const char* kind, const Texture& texture, const std::string& option = {}) {
         if (texture.path.empty() && !texture.image) return;
-        text_ += keyword + option;
+        body_ += keyword + option;
         if (texture.channel > 0) line(" -imfchan {}", "rgbm"[texture.channel]);
-        if (texture.wrap_u == Wrap::clamp && texture.wrap_v == Wrap::clamp) text_ += " -clamp on";
+        if (texture.wrap_u == Wrap::clamp && texture.wrap_v == Wrap::clamp) body_ += " -clamp on";
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0) && obj_mapping().has_transform(M))
             line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
-        line(" {}\n", texture.path.empty() ? name_of(texture.image, kind) : path_of(texture));
+        line(" {}\n", texture.path.empty() ? name_of(texture.image, kind) : name_in_line(path_of(texture)));
     }
 
     std::string path_of(const Texture& texture) const {
@@ -160,15 +192,21 @@ class MtlWriter {
         std::string& name = names_[image];
         for (int i = 1; name.empty(); ++i) {
             std::string free = fmt::format("{}_{}{}.png", stem_, kind, i == 1 ? "" : fmt::format("_{}", i));
-            if (taken_.insert(free).second) name = std::move(free);
+            if (is_free(free) && taken_.insert(free).second) name = std::move(free);
         }
         images_[name] = image;
         return name;
     }
 
+    bool is_free(const std::string& name) const {
+        std::error_code ignored;
+        return own_.contains(name) || !fs::exists(folder_ / name, ignored);
+    }
+
     fs::path folder_;
-    std::string stem_, text_;
-    std::set<std::string> taken_;
+    std::string stem_, text_, body_;
+    std::set<std::string> own_, taken_, material_names_;
+    std::map<std::pair<std::string, std::string>, std::string> materials_;  ///< by plain name and body
     std::map<std::shared_ptr<const Image>, std::string> names_;
     std::map<std::string, std::shared_ptr<const Image>> images_;
 };
@@ -177,13 +215,13 @@ class MtlWriter {
 
 ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::path& folder) {
     ObjText text;
-    const std::vector<std::string> names = material_names(mesh);
-    MtlWriter writer(folder, fs::path(mtl_name).stem().string());
+    std::vector<std::string> names;
+    MtlWriter writer(folder, mtl_name);
     for (const Material& material : mesh.materials) writer.keep_names_of(material);
-    for (size_t i = 0; i < names.size(); ++i) writer.append(mesh.materials[i], names[i]);
+    for (const Material& material : mesh.materials) names.push_back(writer.add(material));
     text.mtl = writer.take();
     text.images = writer.take_images();
-    if (!names.empty()) text.obj = fmt::format("mtllib {}\n", mtl_name);
+    if (!names.empty()) text.obj = fmt::format("mtllib {}\n", name_in_line(mtl_name));
     append_vertices(mesh, text.obj);
     std::vector<MeshPart> parts = mesh.parts;
     if (parts.empty()) parts.push_back({{}, 0, int(mesh.F.rows()), 0});
