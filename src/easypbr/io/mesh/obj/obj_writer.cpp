@@ -11,8 +11,8 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
-#include "easypbr/io/tables/face_polygons.h"
 #include "easypbr/io/mesh/texture_mapping.h"
+#include "easypbr/io/tables/face_polygons.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
