@@ -205,3 +205,21 @@ def test_the_camera_leaves_room_for_the_colour_bar():
 def test_asking_for_what_there_is_nothing_for_is_a_warning(caplog):
     easypbr.render(shapes.box(), size=(32, 24), samples=1, legend=True, colorbar=True)
     assert "there is no legend" in caplog.text and "there is no colour bar" in caplog.text
+
+
+def test_what_there_is_nothing_to_write_of_is_told_once_per_change(caplog):
+    def told():
+        for _ in range(3):
+            view.render(samples=1)
+        counts = caplog.text.count("there is no legend"), caplog.text.count("there is no colour bar")
+        caplog.clear()
+        return counts
+
+    view = viewer(shapes.box(), annotation={"legend": True})
+    assert told() == (1, 0)
+    view.settings.annotation.colorbar = True
+    assert told() == (0, 1)
+    view.settings.annotation.legend = False
+    assert told() == (0, 0)
+    view.settings.annotation.legend = True
+    assert told() == (1, 0)

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "easypbr/core/interrupt.h"
-#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/label_colors.h"
@@ -206,7 +205,7 @@ std::string fixed_text(double value, int digits) {
 }
 
 /// All ticks have one format: as many digits after the point as the tick that needs the most.
-std::vector<Tick> written(const std::vector<double>& counts, double step, double magnitude) {
+std::vector<Tick> ticks_at(const std::vector<double>& counts, double step, double magnitude) {
     const bool scientific = magnitude >= 1e6 || magnitude < 1e-3;
     size_t digits = 1;
     for (const double count : counts) digits = std::max(digits, decimal_of(count, step).digits.size());
@@ -232,7 +231,7 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
     const double magnitude = std::max(std::abs(min), std::abs(max));
     std::vector<double> counts;
     for (double k = std::max(first(), last() - most + 1); k <= last(); ++k) counts.push_back(k);
-    return written(counts, step, magnitude);
+    return ticks_at(counts, step, magnitude);
 }
 
 namespace {
@@ -265,13 +264,6 @@ Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& set
     if (!settings.annotation.legend && !settings.annotation.colorbar) return {};
     const Collector found(scene, settings);
     return {found.legends(), found.bars()};
-}
-
-void warn_of_missing(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
-    if (settings.legend && annotation.legends.empty())
-        log_warning("annotation.legend: nothing is coloured by labels, there is no legend");
-    if (settings.colorbar && annotation.bars.empty())
-        log_warning("annotation.colorbar: nothing is coloured by values, there is no colour bar");
 }
 
 }  // namespace easypbr::app

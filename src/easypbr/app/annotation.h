@@ -43,8 +43,6 @@ struct Annotation {
 /// What the settings ask for of the visible objects: a legend for each label map, a colour bar for each name,
 /// range and colormap. Bars of the same title have the name of their object added.
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings);
-/// Logs a warning where the settings ask for something that there is nothing for.
-void warn_of_missing(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings);
 
 /// The side of a picture of this size that the annotation takes, beside or above and below, whichever is
 /// less. Nothing where that is more than a third.

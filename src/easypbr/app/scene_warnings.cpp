@@ -50,6 +50,16 @@ std::string shaders_text(const SceneSnapshot& scene, const Settings& settings) {
                        name);
 }
 
+std::string legend_text(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
+    if (!settings.legend || !annotation.legends.empty()) return {};
+    return "annotation.legend: nothing is coloured by labels, there is no legend";
+}
+
+std::string colorbar_text(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
+    if (!settings.colorbar || !annotation.bars.empty()) return {};
+    return "annotation.colorbar: nothing is coloured by values, there is no colour bar";
+}
+
 }  // namespace
 
 void SceneWarnings::Once::tell(const std::string& text) {
@@ -62,6 +72,11 @@ void SceneWarnings::check(const SceneSnapshot& scene, const Settings& settings,
     lens_.tell(lens_text(settings, resolved));
     normals_.tell(surfels_text(scene, settings));
     shaders_.tell(shaders_text(scene, settings));
+}
+
+void SceneWarnings::check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
+    legend_.tell(legend_text(annotation, settings));
+    colorbar_.tell(colorbar_text(annotation, settings));
 }
 
 }  // namespace easypbr::app

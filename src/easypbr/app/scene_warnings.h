@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "easypbr/app/annotation.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
@@ -18,6 +19,8 @@ class SceneWarnings {
     /// any, which is drawn as points; a material with a shader that has no faces to act on; paths that are
     /// asked for where a material has extensions of glTF.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
+    /// The same: a legend or a colour bar that there is nothing for.
+    void check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings);
 
   private:
     /// Remembers whether something is wrong; logs `text` when it was not before.
@@ -25,7 +28,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, normals_, shaders_;
+    Once lens_, normals_, shaders_, legend_, colorbar_;
 };
 
 }  // namespace easypbr::app

@@ -191,7 +191,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
 
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {
     Annotation annotation = annotation_of(prepared.scene, prepared.resolved.settings);
-    warn_of_missing(annotation, prepared.resolved.settings.annotation);
+    warnings_.check(annotation, prepared.resolved.settings.annotation);
     if (annotation.empty()) return;
     drawn.finish_.annotate = [annotation = std::move(annotation),
                               settings = prepared.resolved.settings.annotation](Image& picture) {

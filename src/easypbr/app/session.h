@@ -219,7 +219,7 @@ class Session {
     /// outdates what was drawn before. Returns what will be drawn, a picture, surfaces, or both.
     Drawn begin(Prepared& prepared, bool picture, bool surfaces);
     /// What lies over the picture.
-    static void annotate(Drawn& drawn, const Prepared& prepared);
+    void annotate(Drawn& drawn, const Prepared& prepared);
     TiledPicture tiled(const Prepared& prepared) const;
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
