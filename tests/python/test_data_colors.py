@@ -81,7 +81,8 @@ def test_lines_are_drawn_over_exact_colours(samples):
 
 
 @pytest.mark.parametrize("samples", [1, 4])
-def test_glass_is_seen_before_exact_colours(samples):
+@pytest.mark.parametrize("paths", [False, True])
+def test_glass_is_seen_before_exact_colours(samples, paths):
     back, front = shapes.plane(4), shapes.plane(2)
     back.L = [7, 7]
     back.label_map = LabelMap(list("abcdefgh"))
@@ -90,7 +91,8 @@ def test_glass_is_seen_before_exact_colours(samples):
     scene = Scene()
     scene.show(back, "back")
     scene.show(front.transform([[1, 0, 0, 0], [0, 1, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1]]), "front")
-    view = Viewer((120, 90), {"camera": {"position": (0, 8, 0), "target": (0, 0, 0), "up": "z"}}, scene)
+    view = Viewer((120, 90), {"camera": {"position": (0, 8, 0), "target": (0, 0, 0), "up": "z"},
+                               "path": {"enabled": paths}}, scene)
     picture = view.render(samples=samples)
     exact = np.array(back.label_map.colors[7])
     # In front of the middle half of the light is black.

@@ -1,4 +1,5 @@
 // Blended surfaces that are lit by paths.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -45,18 +46,23 @@ double mean_of_middle(const Image& image) {
     return sum / 64;
 }
 
+/// Black and without end, beside what is near the origin.
+Mesh black_wall() {
+    Mesh wall = facing_square(40, blended(0, 1));
+    Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+    pose.linear() = Eigen::AngleAxisd(pi / 2, Vec3d::UnitY()).toRotationMatrix();
+    pose.translation() = Vec3d(-0.05, 0, 40);
+    wall.set_T_world_mesh(pose);
+    return wall;
+}
+
 // On a floor beside a black wall without end a half of the sky arrives, and the floor shows a half of that: a
 // quarter, and covers a half. 0.01: 1024 samples of one pixel. The raster frame does not know of the wall.
 TEST(PathLayers, SkyBesideAWall) {
     for (const bool native : {true, false}) {
         Scene scene;
         scene.show(facing_square(1, blended(1, 0.5f)), "floor");
-        Mesh wall = facing_square(40, blended(0, 1));
-        Eigen::Affine3d pose = Eigen::Affine3d::Identity();
-        pose.linear() = Eigen::AngleAxisd(pi / 2, Vec3d::UnitY()).toRotationMatrix();
-        pose.translation() = Vec3d(-0.05, 0, 40);
-        wall.set_T_world_mesh(pose);
-        scene.show(wall, "wall");
+        scene.show(black_wall(), "wall");
         app::Session session = session_under_sky(scene, 3);
         session.allow_native_geometry(native);
         session.settings().shading.dielectric_f0 = 0;
@@ -120,6 +126,96 @@ TEST(PathLayers, DenoisedPicturesAreCloser) {
     const Image reference = drawn(Denoising::off, 1024), noisy = drawn(Denoising::off, 8),
                 denoised = drawn(Denoising::filter, 8);
     EXPECT_LT(apart(denoised, reference), apart(noisy, reference) / 2);
+}
+
+/// An unlit square whose colour is that of a label: exact.
+Mesh labelled_square(float z) {
+    Mesh mesh = facing_square(1);
+    mesh.set_L(Array1i(Array1i::Dense::Constant(4, 1)));
+    Style style;
+    style.lit = false;
+    mesh.set_style(style);
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, z)));
+    return mesh;
+}
+
+/// `front` at z = 0 before an exact colour.
+app::Session session_before_label(const Material& front, Scene& scene) {
+    scene.show(labelled_square(-0.05f), "labelled");
+    scene.show(facing_square(1, front), "front");
+    app::Session session = session_under_sky(scene, 32);
+    look_from(session, Vec3d(0, 0, 5), 0.02f * 57);
+    return session;
+}
+
+struct Spread {
+    double mean = 0, deviation = 0;
+};
+
+constexpr int spread_side = 16;
+
+/// Of a channel over the pixels in the middle.
+Spread spread_of(const Image& image, int channel) {
+    double sum = 0, squares = 0;
+    const int from = image.width() / 2 - spread_side / 2, to = from + spread_side;
+    for (int y = from; y < to; ++y)
+        for (int x = from; x < to; ++x) {
+            const double value = image.at<float>(x, y)[channel];
+            sum += value;
+            squares += value * value;
+        }
+    const double count = spread_side * spread_side, mean = sum / count;
+    return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean))};
+}
+
+// As in SkyBesideAWall, a quarter and one half of the colour behind. A path brings 0 to 1, of which a half is
+// seen: a deviation of 0.25 at most, and four of them in a mean of 256 pixels.
+TEST(PathLayers, LightBeforeExactColors) {
+    Scene bare;
+    bare.show(labelled_square(0), "labelled");
+    app::Session plain = plain_session(bare, 32);
+    look_from(plain, Vec3d(0, 0, 5), 20);
+    const Image label = render_linear(plain);
+    for (const bool native : {true, false})
+        for (const int samples : {1, 4}) {
+            Scene scene;
+            scene.show(black_wall(), "wall");
+            app::Session session = session_before_label(blended(1, 0.5f), scene);
+            session.settings().shading.dielectric_f0 = 0;
+            session.allow_native_geometry(native);
+            const Image image = render_linear(session, samples);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(spread_of(image, c).mean, 0.25 + 0.5 * label.at<float>(16, 16)[c],
+                            4 * 0.25 / spread_side)
+                    << native << ", " << samples << " samples, channel " << c;
+        }
+}
+
+// The deviation of a mean of n samples is that of one by the root of n, or less. 1.2: the deviation of 256
+// values is known to 1 / sqrt(2 * 256), 4 %, of either picture. The means are apart by the noise of the
+// first, four deviations at most.
+TEST(PathLayers, NoiseBeforeExactColorsFalls) {
+    Material glass;
+    glass.transmission = 1;
+    glass.roughness = 0;
+    for (const Material& front : {blended(1, 0.5f), glass}) {
+        Scene scene;
+        if (!front.transmits()) scene.show(black_wall(), "wall");  // A mirror image of it is no noise.
+        app::Session session = session_before_label(front, scene);
+        const Image one = render_linear(session, 1);
+        for (const int samples : {16, 64}) {
+            const Image many = render_linear(session, samples);
+            double noise = 0;
+            for (int c = 0; c < 3; ++c) {
+                const Spread first = spread_of(one, c), mean = spread_of(many, c);
+                EXPECT_LE(mean.deviation, 1.2 * first.deviation / std::sqrt(samples) + 1e-6)
+                    << front.opacity << ", " << samples << " samples, channel " << c;
+                EXPECT_NEAR(mean.mean, first.mean, 4 * first.deviation / spread_side + 1e-3);
+                noise += first.deviation;
+            }
+            EXPECT_GT(noise, 0.01) << front.opacity << ": without noise nothing is tested";
+        }
+    }
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ Frame make_frame(const Shot& shot, int sample_index, const Camera& camera, const
                         ? frame.whole()
                         : covered_rect(bounds, frame.clip_from_view * frame.camera.view(), frame.size);
     // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
-    const Vec2d offset = jitter_of(frame.sample_index, frame.sample_count);
+    const Vec2d offset =
+        frame.through_centres ? Vec2d(0, 0) : jitter_of(frame.sample_index, frame.sample_count);
     const Vec2d ndc(2 * offset.x() / frame.size.x(), -2 * offset.y() / frame.size.y());
     Mat4d shift = Mat4d::Identity();
     shift(0, 3) = ndc.x();

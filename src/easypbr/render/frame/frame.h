@@ -32,6 +32,7 @@ struct Shot {
     int sample_count = 1;
     const Motion* motion = nullptr;  ///< the frames are of different times, where something moved
     bool through_lens = false;       ///< the frames look through different places of the lens
+    bool through_centres = false;    ///< all frames look through the pixels' centres
     /// Paths light all surfaces: their light is noisy, and frames are averaged before the tone curve.
     bool averages_radiance = false;
 };

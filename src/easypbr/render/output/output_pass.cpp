@@ -266,7 +266,7 @@ void OutputPass::accumulate(const Frame& frame, const LitPicture& lit, const GBu
     const bool first = frame.sample_index == 0;
     drawn_ = first ? lit.covered : united(drawn_, lit.covered);
     add_shadow_share(frame, lit, surfaces);
-    if (frame.averages_radiance) return add_radiance(frame, lit, surfaces);
+    if (frame.averages_radiance) return add_radiance(frame, lit, surfaces, mean_);
     const ShaderInputs values = sample_inputs(frame, lit, encoding_);
     if (lit.radiance->is_ahead() && (first || sum_.is_ahead())) return add_natively(frame, lit, values);
 
@@ -280,35 +280,46 @@ void OutputPass::accumulate(const Frame& frame, const LitPicture& lit, const GBu
     accumulate_.draw(values, limited_to(lit.covered, frame, lit, gl::add));
 }
 
+void OutputPass::accumulate_layers(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces) {
+    add_radiance(frame, lit, surfaces, layers_mean_);
+}
+
+LitPicture OutputPass::layers_mean(const Frame& frame) {
+    LitPicture lit;
+    lit.partly_covered = true;
+    return mean_of(frame, lit, layers_mean_);
+}
+
 // The mean of noisy light comes before the tone curve, and what covers it after.
-void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, const GBuffer& surfaces) {
+void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, const GBuffer& surfaces,
+                              RadianceMean& mean) {
     const bool looks_for_noise = frame.resolved->settings.image.noise > 0;
     if (frame.sample_index == 0)
-        mean_.begin(frame.size, looks_for_noise || denoising_of(frame) != Denoising::off);
+        mean.begin(frame.size, looks_for_noise || denoising_of(frame) != Denoising::off);
     LitPicture lit = lit_frame;
     if (const Target* overlay = std::exchange(lit.overlay, nullptr))
-        mean_.add_overlay(frame, *overlay, transfers_);
+        mean.add_overlay(frame, *overlay, transfers_);
     lit.partly_covered = true;
     const ShaderInputs values = sample_inputs(frame, lit, Encoding::scene_linear);
     const PixelRect area = is_whole(frame, lit) ? frame.whole() : lit.covered;
     const GBuffer& seen = lit.guides ? *lit.guides : surfaces;
-    const Target& sample = mean_.sample();
-    mean_.begin_frame(frame, lit.guides != nullptr);
+    const Target& sample = mean.sample();
+    mean.begin_frame(frame, lit.guides != nullptr);
     if (lit.radiance->is_ahead()) {
         for (int y = 0; y < area.height; y += sample_rows) {
             const PixelRect band{area.x, area.y + y, area.width, std::min(sample_rows, area.height - y)};
             sample.write(band);
             accumulate_.shade(values, {.target = &sample, .area = band}, transfers_);
-            mean_.add(frame, band, seen, transfers_);
+            mean.add(frame, band, seen, transfers_);
         }
     } else {
         sample.drawn();
         sample_framebuffer_ = gl::Framebuffer({&sample.attachment()});
         sample_framebuffer_.bind();
         accumulate_.draw(values, screen_state(area));
-        mean_.add(frame, area, seen, transfers_);
+        mean.add(frame, area, seen, transfers_);
     }
-    mean_.end_frame();
+    mean.end_frame();
 }
 
 float OutputPass::noise(const Frame& frame) const {
@@ -373,25 +384,35 @@ void OutputPass::add_shadow_share(const Frame& frame, const LitPicture& lit_fram
     share_.draw(values, {.blending = gl::add});
 }
 
-LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
-    LitPicture mean = lit;
-    mean.radiance = &mean_.mean(denoising_of(frame), frame.resolved->exposure, transfers_);
-    mean.overlay = mean_.overlay_mean();
-    mean.glow = nullptr;
-    mean.covered = drawn_;
-    return mean;
+LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit, RadianceMean& mean) {
+    LitPicture shown = lit;
+    shown.radiance = &mean.mean(denoising_of(frame), frame.resolved->exposure, transfers_);
+    shown.overlay = mean.overlay_mean();
+    shown.glow = nullptr;
+    shown.covered = drawn_;
+    return shown;
 }
 
-void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, BackgroundImage* background,
-                        const GBuffer& surfaces, const GBuffer* exact) {
-    const bool averages_radiance = frame.averages_radiance;
-    if (frame.sample_count == 1 && !averages_radiance) add_shadow_share(frame, lit_frame, surfaces);
-    const LitPicture lit = averages_radiance ? mean_of(frame, lit_frame) : lit_frame;
-    const Target* sum = frame.sample_count > 1 && !averages_radiance ? &sum_ : nullptr;
-    const Target& source = sum ? *sum : *lit.radiance;
-    if (source.is_ahead()) return finish_natively(frame, lit, background, exact);
+const Target* OutputPass::sum_of(const Frame& frame) const {
+    return frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
+}
 
-    source.upload(transfers_);
+LitPicture OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, BackgroundImage* background,
+                              const GBuffer& surfaces, const GBuffer* exact) {
+    if (frame.sample_count == 1 && !frame.averages_radiance) add_shadow_share(frame, lit_frame, surfaces);
+    const LitPicture lit = frame.averages_radiance ? mean_of(frame, lit_frame, mean_) : lit_frame;
+    const Target* sum = sum_of(frame);
+    if ((sum ? sum : lit.radiance)->is_ahead())
+        finish_natively(frame, lit, background, exact);
+    else
+        finish_by_driver(frame, lit, background, exact);
+    return lit;
+}
+
+void OutputPass::finish_by_driver(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
+                                  const GBuffer* exact) {
+    const Target* sum = sum_of(frame);
+    (sum ? sum : lit.radiance)->upload(transfers_);
     if (has_shadow(lit, encoding_)) shadow_share_.upload(transfers_);
     ShaderInputs values = display_inputs(frame, lit, sum);
     gl::DrawState state;
@@ -416,7 +437,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, Backgro
 
 void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
                                  const GBuffer* exact) {
-    const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
+    const Target* sum = sum_of(frame);
     const PixelRect area = background || is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
     ShaderInputs values = display_inputs(frame, lit, sum);
     if (background)
@@ -439,7 +460,7 @@ void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GB
     values.set("u_depth_target", targets.depth);
     if (lit.overlay) values.set("u_overlay", *lit.overlay);
     if (layers) {
-        values.set("u_radiance", targets.radiance);
+        values.set("u_radiance", *lit.radiance);
         values.set("u_exposure", exposure_of(frame, encoding_));
     }
     if (is_finished_natively()) {

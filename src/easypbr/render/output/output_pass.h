@@ -54,6 +54,10 @@ class OutputPass {
     bool is_finished_natively() const { return picture_.is_ahead(); }
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample. `surfaces`: the frame's.
     void accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
+    /// Adds a path traced frame of layers over exact colours to a mean of its own.
+    void accumulate_layers(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
+    /// That mean, denoised as the picture is. It lives until the next call.
+    LitPicture layers_mean(const Frame& frame);
     /// See RadianceMean::noise(); 0 where frames are not of noisy light.
     float noise(const Frame& frame) const;
     /// Ends tiles of noisy light that are as good as image.noise asks. See RadianceMean::end_tiles().
@@ -62,11 +66,12 @@ class OutputPass {
     const SampledTiles& tiles() const { return mean_.tiles(); }
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     /// `surfaces`: those of the last frame.
-    /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
-    void finish(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
-                const GBuffer& surfaces, const GBuffer* exact);
+    /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some. Returns
+    /// what it shows, of noisy light the mean, which lives as long as that of RadianceMean.
+    LitPicture finish(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
+                      const GBuffer& surfaces, const GBuffer* exact);
     /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
-    /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
+    /// them. With `layers` radiance and overlay hold all that lies before the colours.
     void write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers);
 
     /// Row 0 is the top of the picture.
@@ -78,16 +83,20 @@ class OutputPass {
 
   private:
     void blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact);
+    /// What finish() reads; null: the radiance of the only frame, or the mean.
+    const Target* sum_of(const Frame& frame) const;
+    void finish_by_driver(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
+                          const GBuffer* exact);
     void finish_natively(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
                          const GBuffer* exact);
     void blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact);
     ShaderInputs edge_inputs(const Frame& frame, const GBuffer* exact) const;
-    /// Adds a frame of noisy light to the mean, before the tone curve.
-    void add_radiance(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
+    /// Adds a frame of noisy light to a mean, before the tone curve.
+    void add_radiance(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces, RadianceMean& mean);
     /// How such frames' mean is denoised.
     Denoising denoising_of(const Frame& frame) const;
     /// The mean of such frames so far, as if it were the only one.
-    LitPicture mean_of(const Frame& frame, const LitPicture& lit);
+    LitPicture mean_of(const Frame& frame, const LitPicture& lit, RadianceMean& mean);
     void add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values);
     /// Adds what a frame's surfaces leave of a shadow catcher, where the picture tells it from its shadow.
     void add_shadow_share(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
@@ -97,8 +106,9 @@ class OutputPass {
     PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
     Target sum_, picture_, aliased_;
-    Target shadow_share_;  ///< R32F, the sum of all frames
-    RadianceMean mean_;    ///< of frames whose radiance is averaged
+    Target shadow_share_;       ///< R32F, the sum of all frames
+    RadianceMean mean_;         ///< of frames whose radiance is averaged
+    RadianceMean layers_mean_;  ///< of what lies before exact colours
     gl::Framebuffer sum_framebuffer_, sample_framebuffer_, share_framebuffer_;
     mutable gl::Framebuffer picture_framebuffer_;
     ScreenShader accumulate_{"accumulate_sample.frag", native::Shader::accumulate_sample};

@@ -100,7 +100,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
                    .partly_covered = contents.ground};
     if (has_layers) draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    draw_effects(frame, opaque, {.native = pass.empty()}, lit);
+    draw_effects(frame, opaque, {.native = pass.empty(), .overlay_only = contents.only_layers}, lit);
     return lit;
 }
 
@@ -116,16 +116,20 @@ void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const
     // The target's being there says that it holds this frame's.
     const bool occludes = resolved.settings.ssao.enabled && !contents.traced && !contents.paths;
     if (!occludes) targets_.remove_ambient_occlusion();
-    if (contents.paths) return trace_paths(frame, contents.tiles, inputs.native, caught);
+    if (contents.paths) return trace_paths(frame, contents, inputs.native, caught);
     if (occludes) occlude(frame, inputs.native, surfaces);
     light(frame, targets_, contents, inputs, caught);
 }
 
-void Pipeline::trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught) {
+void Pipeline::trace_paths(const Frame& frame, const FrameContents& contents, bool native, bool caught) {
     timer_.run("paths", [&] {
-        if (frame.sample_index == 0 || frame.motion) ray_scene_.make_surfaces(*frame.resolved);
-        paths_.draw(frame, targets_, ray_scene_, caught ? &ground_.caught_part(frame) : nullptr, tiles,
-                    transfers_);
+        const bool first = frame.sample_index == 0 && !contents.only_layers;
+        if (first || frame.motion) ray_scene_.make_surfaces(*frame.resolved);
+        const Target* part = caught ? &ground_.caught_part(frame) : nullptr;
+        if (contents.only_layers)
+            paths_.begin_layers(frame, targets_, ray_scene_, part);
+        else
+            paths_.draw(frame, targets_, ray_scene_, part, contents.tiles, transfers_);
         if (native) return;
         targets_.radiance.upload(transfers_);
         if (caught) ground_.caught_part(frame).upload(transfers_);

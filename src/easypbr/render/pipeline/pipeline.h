@@ -31,10 +31,11 @@ namespace easypbr::render {
 
 /// What the frames of a picture are drawn for.
 struct FrameContents {
-    bool ids = false;     ///< the id targets are filled; surfaces are of the core model
-    bool ground = false;  ///< a plane under the content belongs to the picture
-    bool traced = false;  ///< rays look for the environment's light, in place of ambient occlusion
-    bool paths = false;   ///< surfaces are lit by path tracing
+    bool ids = false;          ///< the id targets are filled; surfaces are of the core model
+    bool ground = false;       ///< a plane under the content belongs to the picture
+    bool traced = false;       ///< rays look for the environment's light, in place of ambient occlusion
+    bool paths = false;        ///< surfaces are lit by path tracing
+    bool only_layers = false;  ///< paths light nothing but layers, and no effect spreads their light
     /// Those that have ended get no paths; null: all get some.
     const SampledTiles* tiles = nullptr;
     CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
@@ -101,7 +102,7 @@ class Pipeline {
     /// Finds the light of all surfaces that are not layers, by the way that the contents ask for.
     void light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
                         const LightInputs& inputs, const AmbientOcclusionPass::Surfaces& surfaces);
-    void trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught);
+    void trace_paths(const Frame& frame, const FrameContents& contents, bool native, bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
     /// Tells kinds that are not lit what darkens them.
     void find_place_light(const Frame& frame, const DrawList& list, const DrawList& casters,

@@ -62,14 +62,15 @@ struct Renderer::Picture {
     Shot shot;
     std::vector<Eigen::Affine3d> poses_before;  ///< of the objects, where the shot has motion
     FrameContents contents;
-    Frame frame;                  ///< drawn last
-    LitPicture lit;               ///< of that frame
-    int frames = 0;               ///< so far
-    double seconds = 0;           ///< that the frames took so far
-    bool with_exact = false;      ///< colours of tables, which nothing may mix with others
-    bool ends_tiles = false;      ///< each once its light is good enough
-    bool is_finished = false;     ///< at least once
-    bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
+    Frame frame;                   ///< drawn last
+    LitPicture lit;                ///< of that frame
+    int frames = 0;                ///< so far
+    double seconds = 0;            ///< that the frames took so far
+    bool with_exact = false;       ///< colours of tables, which nothing may mix with others
+    bool averages_layers = false;  ///< before those colours
+    bool ends_tiles = false;       ///< each once its light is good enough
+    bool is_finished = false;      ///< at least once
+    bool holds_surfaces = false;   ///< its only frame is what the pixels' centres see
 };
 
 namespace {
@@ -155,23 +156,25 @@ void Renderer::prepare(Picture& picture) {
                         .paths = traces_paths && is_picture,
                         .custom = is_picture ? &custom_ : nullptr};
     picture.shot.averages_radiance = picture.contents.paths;
+    if (picture.contents.paths) picture.list = picture.list.as_first_hits();
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
     picture.contents.in_host_memory = is_picture;
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
-    if (picture.contents.paths) picture.averaged = picture.averaged.as_first_hits();
+    picture.averages_layers = apart && picture.contents.paths && picture.list.has(&DrawItem::layered);
     if (picture.contents.ids) pipeline_.targets().add_ids();
     // Where tiles do not depend on each other.
     picture.ends_tiles = picture.shot.averages_radiance && custom_.empty() &&
-                         !pipeline_.spreads_light(picture.shot) && !picture.list.has(&DrawItem::layered);
+                         !pipeline_.spreads_light(picture.shot) && !all.has(&DrawItem::layered);
 }
 
 int Renderer::add_sample() {
     Picture& picture = *picture_;
     const Stopwatch watch(picture.seconds);
     draw_sample(picture);
+    if (picture.averages_layers) draw_layers_before_exact(picture);
     ++picture.frames;
     return picture.frames;
 }
@@ -188,29 +191,50 @@ bool Renderer::is_complete() const {
            output_.noise(picture.frame) < image.noise;
 }
 
+Frame Renderer::next_frame(const Picture& picture, const Shot& shot, Camera camera, const DrawList& list) {
+    const Box3d& bounds = pipeline_.bounds_of(*shot.scene);
+    const bool ground = picture.contents.ground;
+    if (ground) GroundPass::widen_depth(camera, picture.resolved, bounds);
+    return make_frame(shot, picture.frames, camera, bounds, list.reaches_beyond_vertices() || ground);
+}
+
 void Renderer::draw_sample(Picture& picture) {
     const Shot& shot = picture.shot;
-    Camera camera = camera_of(shot, picture.frames);
     if (shot.motion) {
         const double shutter = picture.resolved.settings.motion_blur.shutter;
         move_objects(picture.drawable, picture.scene, picture.poses_before,
                      shutter_time(picture.frames, shot.sample_count, shutter));
     }
-    const Box3d& bounds = pipeline_.bounds_of(*shot.scene);
-    if (picture.contents.ground) GroundPass::widen_depth(camera, picture.resolved, bounds);
-    const bool reaches_beyond = picture.averaged.reaches_beyond_vertices() || picture.contents.ground;
-    picture.frame = make_frame(shot, picture.frames, camera, bounds, reaches_beyond);
+    picture.frame = next_frame(picture, shot, camera_of(shot, picture.frames), picture.averaged);
     has_layers_ = true;
     picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.casters, picture.contents);
     if (shot.sample_count == 1 && !shot.averages_radiance) return;
     pipeline_.timer().run("accumulate", [&] {
         output_.accumulate(picture.frame, picture.lit, pipeline_.targets());
-        // All of its light is in the mean.
-        if (shot.averages_radiance && custom_.empty()) pipeline_.targets().radiance.release();
+        if (shot.averages_radiance) release_radiance();
         if (!picture.ends_tiles) return;
         output_.end_tiles(picture.frame);
         picture.contents.tiles = &output_.tiles();
     });
+}
+
+void Renderer::draw_layers_before_exact(Picture& picture) {
+    if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
+    Shot shot = picture.shot;
+    shot.through_lens = false;
+    shot.through_centres = true;
+    FrameContents contents = picture.contents;
+    contents.only_layers = true;
+    const Frame frame = next_frame(picture, shot, picture.resolved.camera, picture.list);
+    const LitPicture lit = pipeline_.draw(frame, picture.list, picture.casters, contents);
+    pipeline_.timer().run("accumulate", [&] {
+        output_.accumulate_layers(frame, lit, pipeline_.targets());
+        release_radiance();
+    });
+}
+
+void Renderer::release_radiance() {
+    if (custom_.empty()) pipeline_.targets().radiance.release();
 }
 
 void Renderer::finish() {
@@ -222,12 +246,12 @@ void Renderer::finish() {
         pipeline_.end_paths();
         if (custom_.empty() && !exact && !picture.holds_surfaces) release_targets();
     }
-    timer.run("output", [&] {
-        output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images),
-                       pipeline_.targets(), exact);
+    const LitPicture shown = timer.run("output", [&] {
+        return output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images),
+                              pipeline_.targets(), exact);
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
-    if (exact) timer.run("exact", [&] { draw_exact(); });
+    if (exact) timer.run("exact", [&] { draw_exact(shown); });
     if (picture.contents.custom) draw_custom_over_picture();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { draw_kept(); });
@@ -242,11 +266,16 @@ void Renderer::release_targets() {
     has_layers_ = false;
 }
 
-void Renderer::draw_exact() {
+void Renderer::draw_exact(const LitPicture& shown) {
     Picture& picture = *picture_;
-    const bool has_layers = picture.list.has([](const DrawItem& item) { return item.layered; });
+    const bool has_layers = picture.list.has(&DrawItem::layered);
     const bool averaged = picture.shot.sample_count > 1;
-    LitPicture lit = picture.lit;
+    // The only frame is that of the pixels' centres.
+    if (has_layers && picture.shot.averages_radiance) {
+        const LitPicture lit = averaged ? output_.layers_mean(picture.frame) : shown;
+        return output_.write_exact(picture.frame, lit, pipeline_.targets(), true);
+    }
+    LitPicture lit = shown;
     Frame frame = picture.frame;
     if (averaged) {
         Shot shot = picture.shot;
@@ -263,9 +292,8 @@ void Renderer::draw_exact() {
     if (averaged && has_layers) {
         FrameContents contents = picture.contents;
         contents.traced = picture.resolved.traces_single_frames;
-        contents.paths = contents.paths && picture.resolved.asks_for_paths;
         lit = pipeline_.draw(frame, picture.list, picture.casters, contents);
-        lit.partly_covered |= picture.lit.partly_covered;
+        lit.partly_covered |= shown.partly_covered;
     }
     if (averaged && !has_layers) {
         pipeline_.draw_surfaces(frame, picture.list, {.ids = picture.contents.ids});
@@ -274,6 +302,8 @@ void Renderer::draw_exact() {
     if (!has_layers)
         lit.overlay =
             pipeline_.draw_overlay(frame, picture.list, picture.contents, output_.is_finished_natively());
+    // Effects spread no light over exact colours.
+    lit.radiance = &pipeline_.targets().radiance;
     output_.write_exact(frame, lit, pipeline_.targets(), has_layers);
 }
 

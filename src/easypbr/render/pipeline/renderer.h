@@ -140,13 +140,20 @@ class Renderer {
                      const SettingsImages& images);
     void prepare(Picture& picture);
     void draw_sample(Picture& picture);
+    /// The layers of a path traced frame, over exact colours: those are seen through the pixels' centres.
+    void draw_layers_before_exact(Picture& picture);
+    /// A frame of `list` that follows those that the picture has.
+    Frame next_frame(const Picture& picture, const Shot& shot, Camera camera, const DrawList& list);
+    /// All of the last frame's light is in the mean.
+    void release_radiance();
     void keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
                        const SettingsImages& images);
     void draw_kept();
     /// All that the last frame tells is in its picture.
     void release_targets();
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
-    void draw_exact();
+    /// `shown`: what the picture was finished from.
+    void draw_exact(const LitPicture& shown);
     void draw_custom_over_picture();
     /// Null where there is none.
     BackgroundImage* background_image(const ResolvedSettings& resolved, const SettingsImages& images);

@@ -49,6 +49,12 @@ float most_spread(const Frame& frame) {
     return most_light(*frame.resolved) * pixels * visible * float(frame.sample_index + 1);
 }
 
+/// Writes one value to all channels of a target of floats.
+void fill_frame(const Frame& frame, const Target& target, float value) {
+    target.write(frame.whole());
+    std::ranges::fill(target.pixels<float>(), value);
+}
+
 }  // namespace
 
 float PathPass::Caught::add(const CaughtLight& light) {
@@ -359,15 +365,19 @@ void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& 
                     const SampledTiles* tiles, Transfers& transfers) {
     if (caught && (frame.sample_index == 0 || caught_.grid().size() != frame.size)) caught_.begin(frame.size);
     if (!caught) caught_.release();
-    if (caught) {
-        caught->write(frame.whole());
-        std::ranges::fill(caught->pixels<float>(), 1.0f);
-    }
+    if (caught) fill_frame(frame, *caught, 1.0f);
     tracer_.prepare(*frame.resolved, scene, most_light(*frame.resolved));
     if (frame.sample_index == 0) fireflies_.begin_picture();
     const bool has_blended = frame.resolved->settings.transparency.mode == TransparencyMode::stochastic;
     const Transmissive seen = has_blended ? Transmissive::met : Transmissive::opaque;
     trace(frame, targets, scene, {tiles, seen, caught}, transfers);
+}
+
+void PathPass::begin_layers(const Frame& frame, const GBuffer& targets, const RayScene& scene,
+                            const Target* caught) {
+    if (caught) fill_frame(frame, *caught, 1.0f);
+    fill_frame(frame, targets.radiance, 0.0f);
+    tracer_.prepare(*frame.resolved, scene, most_light(*frame.resolved));
 }
 
 void PathPass::draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,

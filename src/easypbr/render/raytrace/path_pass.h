@@ -20,6 +20,9 @@ class PathPass {
     /// `tiles`, unless it is null: no path starts in those that have ended, whose radiance is 0.
     void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
               const SampledTiles* tiles, Transfers& transfers);
+    /// In place of draw(), where nothing but layers is lit: the radiance is 0, and all light is caught.
+    void begin_layers(const Frame& frame, const GBuffer& targets, const RayScene& scene,
+                      const Target* caught);
     /// The same of surfaces in front of those of the last draw(), which light passes.
     void draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,
                     const SampledTiles* tiles, Transfers& transfers);
