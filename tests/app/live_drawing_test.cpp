@@ -303,7 +303,7 @@ TEST_F(VertexEditsTest, RemovesByBallAndBox) {
     EXPECT_THROW(remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 1}), ArgumentError);
     EXPECT_EQ(xs(), Xs({-1}));
     // Looks that are changed afterwards stay when the removal is undone.
-    live_.edits().change_look("five", "visible", [](MeshData& d) { d.style.visible = false; });
+    live_.edits().change_look("five", "style.visible", {false});
     note();
     live_.edits().undo();
     live_.edits().undo();
@@ -324,6 +324,52 @@ TEST_F(VertexEditsTest, LeavesWhatAProgramHasShownSince) {
     });
     session_.scene().show(other, "five");
     note();
+    live_.edits().undo();
+    EXPECT_EQ(xs(), Xs({8, 9, 10, 11, 12}));
+}
+
+// What cannot be undone as the program has changed the object is not undone by half, and can be later.
+TEST_F(VertexEditsTest, UndoThatFailsChangesNothing) {
+    Mesh five = session_.scene().get("five");
+    five.edit([](MeshData& data) {
+        Array1i::Dense labels(5, 1);
+        for (int i = 0; i < 5; ++i) labels(i) = i;
+        data.L = std::move(labels);
+    });
+    note();
+    live_.selection() = {"five", "", {}};
+    remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 0.78});  // the last one has 0.75
+    note();
+    const Xs left({-2, -1, 0, 1});
+    ASSERT_EQ(xs(), left);
+    five.set_label_map(LabelMap::generated({"a", "b", "c", "d"}));
+    note();
+    EXPECT_THROW(live_.edits().undo(), ArgumentError) << "the map has no label 4";
+    EXPECT_EQ(xs(), left);
+    EXPECT_FALSE(live_.edits().can_redo());
+    five.set_label_map(std::shared_ptr<const LabelMap>());
+    live_.edits().undo();
+    EXPECT_EQ(xs(), Xs({-2, -1, 0, 1, 2}));
+    EXPECT_TRUE(live_.edits().can_redo());
+}
+
+TEST_F(VertexEditsTest, ForgetsWhatWasBeforeOtherDataThatAreChangedToo) {
+    live_.selection() = {"five", "", {}};
+    remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 0.93});
+    note();
+    Mesh other = five_splats();
+    other.edit([](MeshData& data) {
+        Array3f::Dense V = data.V;
+        V.col(0).array() += 10;
+        data.V = std::move(V);
+    });
+    session_.scene().show(other, "five");
+    note();
+    remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 0.93});
+    note();
+    ASSERT_EQ(xs(), Xs({8}));
+    live_.edits().undo();
+    EXPECT_EQ(xs(), Xs({8, 9, 10, 11, 12}));
     live_.edits().undo();
     EXPECT_EQ(xs(), Xs({8, 9, 10, 11, 12}));
 }

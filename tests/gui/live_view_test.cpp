@@ -318,10 +318,7 @@ TEST_F(Live, PanelsOfANarrowWindowDoNotOverlap) {
 }
 
 TEST_F(Live, NewDataUnderTheSameNameKeepLookAndCamera) {
-    change_look(view_.state(), "ball", "material.roughness", [](MeshData& data) {
-        data.materials.resize(1);
-        data.materials[0].roughness = 0.125f;
-    });
+    change_look(view_.state(), "ball", "material.roughness", {0.125});
     drag(middle, middle + Vec2d(80, 0));
     settle();
     const Vec3d camera = camera_position();
@@ -354,10 +351,7 @@ TEST_F(Live, UndoTakesPosesAndMaterialsBackAndLeavesTheProgramsOwn) {
     settle();
     const auto ball = [&] { return session_.scene().get("ball"); };
     const float roughness = ball().material().roughness;
-    change_look(view_.state(), "ball", "material.roughness", [](MeshData& data) {
-        data.materials.resize(1);
-        data.materials[0].roughness = 0.125f;
-    });
+    change_look(view_.state(), "ball", "material.roughness", {0.125});
     settle();
     // The program moves it: that is no change of a person's.
     ball().translate(Vec3d(0, 0.1, 0));
@@ -463,6 +457,23 @@ TEST(History, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
     history.note(settings);
     EXPECT_FALSE(history.can_redo());
     EXPECT_EQ(history.undo().settings->image.samples, 2);
+}
+
+// Whoever restores a state may fail: the history moves afterwards.
+TEST(History, StaysWhereItIsWhileAStateIsLookedAt) {
+    app::History history;
+    Settings settings;
+    EXPECT_THROW(history.previous(), ArgumentError);
+    for (const int samples : {2, 3, 4}) {
+        settings.image.samples = samples;
+        history.note(settings);
+    }
+    EXPECT_EQ(history.previous().settings->image.samples, 3);
+    EXPECT_EQ(history.previous().settings->image.samples, 3);
+    EXPECT_THROW(history.next(), ArgumentError);
+    history.undo();
+    EXPECT_EQ(history.next().settings->image.samples, 4);
+    EXPECT_EQ(history.previous().settings->image.samples, 2);
 }
 
 TEST(Slices, CutThePictureIntoSlantedParts) {

@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <utility>
 
+#include "easypbr/app/look.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/mesh_arrays.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 
-/// The objects with looks, at the last keep_looks().
+/// The objects with properties that a person has changed, at the last keep_chosen().
 struct Edits::Shown {
     std::map<std::string, Mesh> objects;
 };
 
 namespace {
+
+using Arrays = std::shared_ptr<const MeshData>;
+using Kind = Property::Kind;
 
 std::optional<Light> light_named(const Scene& scene, const std::string& name) {
     const auto names = scene.light_names();
@@ -21,17 +26,56 @@ std::optional<Light> light_named(const Scene& scene, const std::string& name) {
     return scene.light(name);
 }
 
-/// Whether a node has the arrays that a person left: a program may have shown others since.
-bool is_still(const Mesh& node, const std::shared_ptr<const MeshData>& left) {
-    return !left || node.snapshot()->V.revision() == left->V.revision();
+Content content_of(const Mesh& node, const Property& property) {
+    if (property.kind == Kind::arrays) return node.snapshot();
+    if (property.kind == Kind::pose) return node.T_parent_mesh();
+    return look_values(*node.snapshot(), property.look);
 }
 
-ObjectState look_of(const Mesh& node) {
-    const auto data = node.snapshot();
-    ObjectState object;
-    object.materials = data->materials;
-    object.style = data->style;
-    return object;
+/// Nothing where there is no such object.
+std::optional<Content> content_of(const Scene& scene, const Property& property) {
+    if (property.kind == Kind::light) return light_named(scene, property.of);
+    const std::optional<Mesh> node = node_named(scene, property.of);
+    return node ? std::optional(content_of(*node, property)) : std::nullopt;
+}
+
+/// Gives a property of an object, or a light, its content.
+struct Put {
+    Scene& scene;
+    const Property& property;
+
+    void operator()(const Arrays& arrays) const {
+        edit([&](MeshData& data) { replace_arrays(data, *arrays); });
+    }
+    void operator()(const Eigen::Affine3d& pose) const {
+        if (std::optional<Mesh> node = node_named(scene, property.of)) node->set_T_parent_mesh(pose);
+    }
+    void operator()(const Value& value) const {
+        edit([&](MeshData& data) { set_look(data, property.look, value); });
+    }
+    void operator()(const std::vector<Value>& values) const {
+        edit([&](MeshData& data) { set_look(data, property.look, values); });
+    }
+    void operator()(const std::optional<Light>& light) const {
+        if (light)
+            scene.set_light(property.of, *light);
+        else if (light_named(scene, property.of))
+            scene.remove_light(property.of);
+    }
+
+  private:
+    void edit(const std::function<void(MeshData&)>& change) const {
+        if (std::optional<Mesh> node = node_named(scene, property.of)) node->edit(change);
+    }
+};
+
+bool same_vertices(const Content& a, const Content& b) {
+    return std::get<Arrays>(a)->V.revision() == std::get<Arrays>(b)->V.revision();
+}
+
+const Content* content_in(const Choices& choices, const Property& property) {
+    const auto found = choices.find(property);
+    return found == choices.end() ? nullptr : found->second.get();
 }
 
 }  // namespace
@@ -61,49 +105,74 @@ std::optional<Mesh> node_named(const Scene& scene, const std::string& name) {
 Edits::Edits(Session& session) : session_(session), shown_(std::make_unique<Shown>()) {}
 Edits::~Edits() = default;
 
-void Edits::change_look(const std::string& object, const std::string& property, const LookChange& change) {
-    std::optional<Mesh> node = node_named(session_.scene(), object);
-    if (!node) return;
-    history_.know(object, look_of(*node));
-    node->edit(change);
-    changed_looks_.insert(object);
-    looks_[object][property] = change;
+void Edits::begin(const Property& property) {
+    keep_chosen();
+    if (chosen_.contains(property) || touched_.contains(property)) return;
+    std::optional<Content> now = content_of(session_.scene(), property);
+    if (!now) return;
+    programs_.insert_or_assign(property, std::move(*now));
+    if (property.kind == Kind::light) return;
+    if (const std::optional<Mesh> node = node_named(session_.scene(), property.of))
+        shown_->objects.try_emplace(property.of, *node);
 }
 
-void Edits::change_data(const std::string& object, const LookChange& change) {
-    std::optional<Mesh> node = node_named(session_.scene(), object);
-    if (!node) return;
-    ObjectState before;
-    before.arrays = node->snapshot();
-    node->edit(change);
-    history_.know(object, before);
-    changed_data_.insert(object);
+void Edits::change_look(const std::string& object, const std::string& property, const Value& value) {
+    if (!node_named(session_.scene(), object)) return;
+    const Property changed{object, Kind::look, property};
+    begin(changed);
+    Put{session_.scene(), changed}(value);
+    chosen_[changed] = std::make_shared<const Content>(value);
 }
 
-void Edits::keep_looks() {
+void Edits::change_data(const std::string& object, const std::function<void(MeshData&)>& change) {
+    std::optional<Mesh> node = node_named(session_.scene(), object);
+    if (!node) return;
+    const Property changed{object, Kind::arrays};
+    const Content* left = content_in(chosen_, changed);
+    // The program has shown others since: there is no way back from them to what was before.
+    if (left && !same_vertices(*left, node->snapshot())) {
+        history_.forget(changed);
+        chosen_.erase(changed);
+    }
+    begin(changed);
+    node->edit(change);
+    chosen_[changed] = std::make_shared<const Content>(node->snapshot());
+}
+
+void Edits::keep_chosen() {
     std::map<std::string, Mesh> present;
-    for (const auto& [object, changes] : looks_) {
-        const std::optional<Mesh> node = node_named(session_.scene(), object);
+    for (auto& [property, programs] : programs_) {
+        if (property.kind == Kind::light) continue;
+        const std::optional<Mesh> node = node_named(session_.scene(), property.of);
         if (!node) continue;
-        present.insert_or_assign(object, *node);
-        const auto known = shown_->objects.find(object);
+        present.insert_or_assign(property.of, *node);
+        const auto known = shown_->objects.find(property.of);
         if (known == shown_->objects.end() || known->second == *node) continue;
-        Mesh shown = *node;
-        for (const auto& [property, change] : changes) shown.edit(change);
+        if (property.kind == Kind::arrays) continue;
+        programs = content_of(*node, property);
+        if (const Content* chosen = content_in(chosen_, property))
+            std::visit(Put{session_.scene(), property}, *chosen);
     }
     shown_->objects = std::move(present);
 }
 
-void Edits::will_move(const std::string& object, const Mesh& node) {
-    ObjectState before;
-    before.T_parent_mesh = node.T_parent_mesh();
-    history_.know(object, before);
-    changed_poses_.insert(object);
+void Edits::will_move(const std::string& object) {
+    const Property moved{object, Kind::pose};
+    begin(moved);
+    touched_.insert(moved);
 }
 
 void Edits::will_change_light(const std::string& name) {
-    history_.know_light(name, light_named(session_.scene(), name));
-    changed_lights_.insert(name);
+    const Property changed{name, Kind::light};
+    begin(changed);
+    touched_.insert(changed);
+}
+
+void Edits::reload_light(const std::string& name, const Light& light) {
+    const Property property{name, Kind::light};
+    if (const auto known = programs_.find(property); known != programs_.end())
+        known->second = std::optional(light);
+    if (!chosen_.contains(property) && !touched_.contains(property)) session_.scene().set_light(name, light);
 }
 
 void Edits::change_settings(const std::function<void(Settings&)>& change) {
@@ -111,61 +180,73 @@ void Edits::change_settings(const std::function<void(Settings&)>& change) {
     history_.change_all(change);
 }
 
+void Edits::leave_to_program(const Settings& before) {
+    const auto changed = changed_choices(before, session_.settings());
+    if (changed.empty()) return;
+    history_.change_all([&](Settings& settings) {
+        for (const auto& [name, value] : changed) field(name).put(settings, value);
+    });
+}
+
+void Edits::as_program(const std::function<void()>& function) {
+    const Settings before = session_.settings();
+    try {
+        function();
+    } catch (...) {
+        leave_to_program(before);
+        throw;
+    }
+    leave_to_program(before);
+}
+
 bool Edits::has_news() const {
-    return !changed_looks_.empty() || !changed_poses_.empty() || !changed_data_.empty() ||
-           !changed_lights_.empty() || !history_.is_present(session_.settings());
+    return !touched_.empty() || !history_.is_present(session_.settings(), chosen_);
 }
 
 void Edits::note() {
-    const Scene& scene = session_.scene();
-    ObjectStates changed;
-    for (const std::string& name : std::exchange(changed_looks_, {})) {
-        const std::optional<Mesh> node = node_named(scene, name);
-        if (!node) continue;
-        changed[name] = look_of(*node);
-        changed[name].changes = looks_[name];
-    }
-    for (const std::string& name : std::exchange(changed_poses_, {}))
-        if (const std::optional<Mesh> node = node_named(scene, name))
-            changed[name].T_parent_mesh = node->T_parent_mesh();
-    for (const std::string& name : std::exchange(changed_data_, {}))
-        if (const std::optional<Mesh> node = node_named(scene, name)) changed[name].arrays = node->snapshot();
-    LightStates lights;
-    for (const std::string& name : std::exchange(changed_lights_, {}))
-        lights[name] = light_named(scene, name);
-    history_.note(session_.settings(), changed, lights);
+    for (const Property& property : std::exchange(touched_, {}))
+        if (std::optional<Content> now = content_of(session_.scene(), property))
+            chosen_[property] = std::make_shared<const Content>(std::move(*now));
+    history_.note(session_.settings(), chosen_);
 }
 
-void Edits::restore(const History::Step& step) {
-    session_.replace_settings(*step.settings);
-    for (const auto& [name, object] : step.objects) {
-        std::optional<Mesh> node = node_named(session_.scene(), name);
-        if (!node) continue;
-        if (object.T_parent_mesh) node->set_T_parent_mesh(*object.T_parent_mesh);
-        if (object.arrays && is_still(*node, object.replaced))
-            node->edit([&arrays = *object.arrays](MeshData& data) { replace_arrays(data, arrays); });
-        if (object.materials && object.style)
-            node->edit([&look = object](MeshData& data) {
-                data.materials = *look.materials;
-                data.style = *look.style;
-            });
-        if (object.materials) looks_[name] = object.changes;
+void Edits::restore(const Property& property, const Content* from, const Content* to) {
+    const auto programs = programs_.find(property);
+    if (programs == programs_.end()) return;
+    if (property.kind == Kind::arrays) {
+        // The program may have shown others since, which stay.
+        const std::optional<Content> now = content_of(session_.scene(), property);
+        if (!now || !same_vertices(*now, from ? *from : programs->second)) return;
+    } else if (!from) {
+        begin(property);
     }
-    for (const auto& [name, light] : step.lights) {
-        if (light)
-            session_.scene().set_light(name, *light);
-        else if (light_named(session_.scene(), name))
-            session_.scene().remove_light(name);
+    std::visit(Put{session_.scene(), property}, to ? *to : programs->second);
+}
+
+void Edits::restore(const History::State& state) {
+    Choices all = chosen_;
+    all.insert(state.choices.begin(), state.choices.end());
+    for (const auto& [property, choice] : all) {
+        const Content *from = content_in(chosen_, property), *to = content_in(state.choices, property);
+        if (from != to) restore(property, from, to);
     }
+    session_.replace_settings(*state.settings);
+    chosen_ = state.choices;
 }
 
 void Edits::undo() {
+    keep_chosen();
     note();
-    if (history_.can_undo()) restore(history_.undo());
+    if (!history_.can_undo()) return;
+    restore(history_.previous());
+    history_.undo();
 }
 
 void Edits::redo() {
-    if (can_redo()) restore(history_.redo());
+    keep_chosen();
+    if (!can_redo()) return;
+    restore(history_.next());
+    history_.redo();
 }
 
 }  // namespace easypbr::app

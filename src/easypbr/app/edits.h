@@ -16,30 +16,39 @@ namespace easypbr::app {
 /// The mesh of a node's name, "car" or "car/wheel"; nothing when there is none.
 std::optional<Mesh> node_named(const Scene& scene, const std::string& name);
 
-/// Changes of settings are found by note(); those of objects and lights are announced.
+/// Changes of settings are found by note(); those of objects and lights are announced. Undo and redo restore
+/// what differs between two states, and leave the rest as the program may have changed it since.
 class Edits {
   public:
     /// The session must outlive it.
     explicit Edits(Session& session);
     ~Edits();
 
-    /// Changes a node's look now and whenever other data are shown under its name (keep_looks()). `property`
-    /// names what is changed: a later change of the same one takes its place. Throws what the change throws.
-    void change_look(const std::string& object, const std::string& property, const LookChange& change);
-    /// Makes the changes again where other data are shown under a name than at the last call.
-    void keep_looks();
+    /// Changes a property of a node's look (app/look.h), of all its materials, now and whenever other data
+    /// are shown under its name. Throws as set_look().
+    void change_look(const std::string& object, const std::string& property, const Value& value);
+    /// Where other data are shown under a name than at the last call, looks and poses that a person chose are
+    /// theirs too; what they came with is what undo() goes back to.
+    void keep_chosen();
 
     /// Changes a node's arrays, once: other data under its name are left as they are. Throws what the change
     /// throws.
-    void change_data(const std::string& object, const LookChange& change);
+    void change_data(const std::string& object, const std::function<void(MeshData&)>& change);
 
     /// Before an object is moved: undo() puts it back.
-    void will_move(const std::string& object, const Mesh& node);
+    void will_move(const std::string& object);
     /// Before a light of the scene is added, changed or removed.
     void will_change_light(const std::string& name);
+    /// Shows a light of a file that is read again. One that a person has changed or removed stays so; undo()
+    /// goes back to that of the file.
+    void reload_light(const std::string& name, const Light& light);
 
     /// A change of settings by the program: undo() and redo() leave it. Throws what the change throws.
     void change_settings(const std::function<void(Settings&)>& change);
+    /// The same of what differs between `before` and the settings now.
+    void leave_to_program(const Settings& before);
+    /// Calls a function of the program; the settings that it changes are the program's.
+    void as_program(const std::function<void()>& function);
 
     /// Notes settings and what was changed as one state.
     void note();
@@ -51,17 +60,22 @@ class Edits {
     void redo();
 
   private:
-    void restore(const History::Step& step);
+    struct Shown;
+
+    /// Keeps what the program has, where a person changes a property for the first time.
+    void begin(const Property& property);
+    void restore(const History::State& state);
+    /// From one choice to another; none: what the program has.
+    void restore(const Property& property, const Content* from, const Content* to);
     /// Something was changed since the last note().
     bool has_news() const;
 
     Session& session_;
     History history_;
-    std::map<std::string, std::map<std::string, LookChange>> looks_;  ///< by object, by property
-    struct Shown;
+    Choices chosen_;                        ///< what note() will note, but for `touched_`
+    std::map<Property, Content> programs_;  ///< what the program has in place of the choices
+    std::set<Property> touched_;            ///< poses and lights that were changed since the last note()
     std::unique_ptr<Shown> shown_;
-    /// Objects and lights that were changed since the last note().
-    std::set<std::string> changed_looks_, changed_poses_, changed_data_, changed_lights_;
 };
 
 }  // namespace easypbr::app

@@ -6,11 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/mesh_data.h"
-#include "easypbr/scene/style.h"
 
 namespace easypbr {
 struct Settings;
@@ -18,40 +21,47 @@ struct Settings;
 
 namespace easypbr::app {
 
-/// Whether a person would see a difference: what is inferred does not count.
+/// The fields that a person would see a difference of, with the values of `now`: what is inferred does not
+/// count.
+std::vector<std::pair<std::string, Value>> changed_choices(const Settings& before, const Settings& now);
+
+/// Whether there are none.
 bool same_choices(const Settings& a, const Settings& b);
 
-/// A change to an object's look, by the property that it sets; made again when other data are shown under the
-/// same name.
-using LookChange = std::function<void(MeshData&)>;
+/// What a person can change by hand beside the settings.
+struct Property {
+    enum class Kind { arrays, pose, look, light };
+    std::string of;  ///< the name of the object, or of the light
+    Kind kind = Kind::look;
+    std::string look = {};  ///< see app/look.h
 
-/// What a person changed of an object; what was never changed is not known, and stays the program's.
-struct ObjectState {
-    std::optional<Eigen::Affine3d> T_parent_mesh;
-    std::optional<std::vector<Material>> materials;
-    std::optional<Style> style;
-    std::map<std::string, LookChange> changes;
-    uint64_t look = 0;  ///< tells looks of one object apart
-    /// Its arrays, where a person has removed some of them.
-    std::shared_ptr<const MeshData> arrays;
-    std::shared_ptr<const MeshData> replaced;  ///< of a step: the arrays that these stand in for
+    bool operator<(const Property& other) const {
+        return std::tie(of, kind, look) < std::tie(other.of, other.kind, other.look);
+    }
+    bool operator==(const Property&) const = default;
 };
-/// By the object's name.
-using ObjectStates = std::map<std::string, ObjectState>;
-/// Lights of the scene by name; none: there is no such light.
-using LightStates = std::map<std::string, std::optional<Light>>;
 
-/// States of settings, objects and lights, oldest first. What is noted after undo() drops what was undone.
+/// What a property is: the arrays of an object, its pose, a value for all of it or one for each material, a
+/// light, or none where it is removed.
+using Content = std::variant<std::shared_ptr<const MeshData>, Eigen::Affine3d, Value, std::vector<Value>,
+                             std::optional<Light>>;
+/// What a person has chosen, each choice an object of its own; the rest is the program's.
+using Choices = std::map<Property, std::shared_ptr<const Content>>;
+
+/// States of settings and choices, oldest first. What is noted after undo() drops what was undone.
 class History {
   public:
+    struct State {
+        std::shared_ptr<const Settings> settings;
+        Choices choices;
+    };
+
     /// Whether they are the present state's, but for what is inferred.
-    bool is_present(const Settings& settings) const;
-    /// Notes the settings, unless they are the present ones but for what is inferred, and the objects and
-    /// lights that were changed since the last note.
-    void note(const Settings& settings, const ObjectStates& changed = {}, const LightStates& lights = {});
-    /// What an object was before a person changed it for the first time: it was so in all states.
-    void know(const std::string& object, const ObjectState& before);
-    void know_light(const std::string& name, const std::optional<Light>& before);
+    bool is_present(const Settings& settings, const Choices& choices = {}) const;
+    /// Notes a state, unless it is the present one but for what is inferred.
+    void note(const Settings& settings, const Choices& choices = {});
+    /// The property is the program's in all states.
+    void forget(const Property& property);
     /// What the program changes is so in all states.
     void change_all(const std::function<void(Settings&)>& change);
 
@@ -59,23 +69,17 @@ class History {
     bool can_undo() const { return present_ > 0; }
     bool can_redo() const { return present_ + 1 < states_.size(); }
 
-    /// What has to be restored.
-    struct Step {
-        std::shared_ptr<const Settings> settings;
-        ObjectStates objects;  ///< what is another way than now
-        LightStates lights;    ///< the same
-    };
-    /// To the state before or after the present one, which it then is. Throws ArgumentError when there is
-    /// none.
-    Step undo();
-    Step redo();
+    /// The state before or after the present one. Throws ArgumentError when there is none.
+    const State& previous() const;
+    const State& next() const;
+    /// Makes it the present one. Throws the same.
+    const State& undo();
+    const State& redo();
 
     static constexpr size_t most_states = 200;
 
   private:
-    Step go(size_t to);
-
-    std::vector<Step> states_;  ///< with all objects and lights that are known
+    std::vector<State> states_;
     size_t present_ = 0;
 };
 

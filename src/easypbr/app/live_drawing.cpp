@@ -61,7 +61,7 @@ void LiveDrawing::begin_frame(Vec2i size, double seconds) {
         event.size = size;
         handlers_.offer(event);
     }
-    edits_.keep_looks();
+    edits_.keep_chosen();
     files_.advance(seconds);
 }
 

@@ -77,7 +77,7 @@ std::optional<Subject> selected_object(GuiState& state) {
     const Eigen::Affine3d parent = parent_pose(scene, state.selection().object), own = node->T_parent_mesh();
     subject.apply = [&state, name = state.selection().object, mesh = *node, parent,
                      own](const Eigen::Affine3d& change) mutable {
-        state.live.edits().will_move(name, mesh);
+        state.live.edits().will_move(name);
         mesh.set_T_parent_mesh(parent.inverse(Eigen::Affine) * change * parent * own);
     };
     return subject;

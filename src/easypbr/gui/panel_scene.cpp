@@ -47,8 +47,7 @@ void node_row(GuiState& state, const Mesh& node, const std::string& path, const 
                           count_text(data->F.rows()).c_str());
     ImGui::TableNextColumn();
     bool visible = data->style.visible.value_or(true);
-    if (ImGui::Checkbox("##visible", &visible))
-        change_look(state, path, "visible", [visible](MeshData& d) { d.style.visible = visible; });
+    if (ImGui::Checkbox("##visible", &visible)) change_look(state, path, "style.visible", {visible});
     note_place("Scene/visible " + path);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", visible ? "Hide" : "Show");
     if (open && !data->children.empty()) {
@@ -80,11 +79,7 @@ void number_row(GuiState& state, const char* name, const Material& material, flo
     float value = material.*member;
     ImGui::PushID(name);
     if (ImGui::SliderFloat("##number", &value, low, high, "%.3g", ImGuiSliderFlags_AlwaysClamp))
-        change_look(state, state.selection().object, std::string("material.") + name,
-                    [member, value](MeshData& data) {
-                        if (data.materials.empty()) data.materials.emplace_back();
-                        for (Material& each : data.materials) each.*member = value;
-                    });
+        change_look(state, state.selection().object, std::string("material.") + name, {double(value)});
     ImGui::PopID();
 }
 
@@ -92,19 +87,17 @@ void material_rows(GuiState& state, const Mesh& mesh) {
     if (!begin_rows("material", false)) return;
     const Material material = mesh.material();
     using M = Material;
-    const auto put_color = [&](const char* property, Vec3 Material::*member) {
-        return [&state, property, member](const Vec3& color) {
-            change_look(state, state.selection().object, property, [member, color](MeshData& data) {
-                if (data.materials.empty()) data.materials.emplace_back();
-                for (Material& each : data.materials) each.*member = color;
-            });
+    const auto put_color = [&](const char* property) {
+        return [&state, property](const Vec3& color) {
+            const std::vector<double> linear = {color[0], color[1], color[2]};
+            change_look(state, state.selection().object, property, {linear});
         };
     };
-    color_row("base color", material.base_color, put_color("material.base_color", &M::base_color));
+    color_row("base color", material.base_color, put_color("material.base_color"));
     number_row(state, "metallic", material, &M::metallic, 0, 1);
     number_row(state, "roughness", material, &M::roughness, 0, 1);
     number_row(state, "opacity", material, &M::opacity, 0, 1);
-    color_row("emissive", material.emissive.cwiseMin(1.0f), put_color("material.emissive", &M::emissive));
+    color_row("emissive", material.emissive.cwiseMin(1.0f), put_color("material.emissive"));
     number_row(state, "clearcoat", material, &M::clearcoat, 0, 1);
     number_row(state, "clearcoat_roughness", material, &M::clearcoat_roughness, 0, 1);
     number_row(state, "transmission", material, &M::transmission, 0, 1);
@@ -122,9 +115,8 @@ void style_rows(GuiState& state, const Mesh& mesh) {
     for (const Field& field : fields()) {
         if (!field.name.starts_with(prefix)) continue;
         const std::string name = field.name.substr(prefix.size());
-        field_row(field, get(style, name), std::nullopt, [&, name](const Value& value) {
-            change_look(state, state.selection().object, "style." + name,
-                        [name, value](MeshData& data) { set(data.style, name, value); });
+        field_row(field, get(style, name), std::nullopt, [&](const Value& value) {
+            change_look(state, state.selection().object, field.name, value);
         });
     }
     end_rows();

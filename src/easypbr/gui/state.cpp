@@ -12,9 +12,9 @@ const char* panel_name(Panel panel) {
 }
 
 void change_look(GuiState& state, const std::string& object, const std::string& property,
-                 const app::LookChange& change) {
+                 const Value& value) {
     try {
-        state.live.edits().change_look(object, property, change);
+        state.live.edits().change_look(object, property, value);
     } catch (const Error& error) {
         state.notify(error.what(), true);
     }

@@ -96,7 +96,6 @@ struct GuiState {
 };
 
 /// app::Edits::change_look(); errors become notifications.
-void change_look(GuiState& state, const std::string& object, const std::string& property,
-                 const app::LookChange& change);
+void change_look(GuiState& state, const std::string& object, const std::string& property, const Value& value);
 
 }  // namespace easypbr::gui

@@ -22,12 +22,8 @@ std::string readable(std::string name) {
 
 // ---- object
 
-void change_materials(app::LiveDrawing& live, const std::string& property,
-                      std::function<void(Material&)> change) {
-    live.edits().change_look(live.selection().object, "material." + property, [change](MeshData& data) {
-        if (data.materials.empty()) data.materials.emplace_back();
-        for (Material& each : data.materials) change(each);
-    });
+void change_materials(app::LiveDrawing& live, const std::string& name, const Value& value) {
+    live.edits().change_look(live.selection().object, "material." + name, value);
 }
 
 /// Colours that were chosen as codes of 8 bits are shown as these: the curve and back rounds them by up to
@@ -54,7 +50,7 @@ void color_row(RecordedWidgets& ui, app::LiveDrawing& live, const Material& mate
     if (!chosen) return;
     const auto& srgb = std::get<std::vector<double>>(chosen->data);
     const Vec3 linear = linear_from_srgb(Vec3(float(srgb[0]), float(srgb[1]), float(srgb[2])));
-    change_materials(live, color.name, [member = color.value, linear](Material& m) { m.*member = linear; });
+    change_materials(live, color.name, {std::vector<double>{linear[0], linear[1], linear[2]}});
 }
 
 void number_row(RecordedWidgets& ui, app::LiveDrawing& live, const Material& material,
@@ -66,8 +62,7 @@ void number_row(RecordedWidgets& ui, app::LiveDrawing& live, const Material& mat
     info.max = number.max;
     const auto chosen = ui.field(readable(number.name), info, {double(material.*number.value)});
     if (!chosen) return;
-    const float value = float(std::get<double>(chosen->data));
-    change_materials(live, number.name, [member = number.value, value](Material& m) { m.*member = value; });
+    change_materials(live, number.name, *chosen);
 }
 
 void material_rows(RecordedWidgets& ui, app::LiveDrawing& live, const Material& material) {
@@ -91,8 +86,7 @@ void style_rows(RecordedWidgets& ui, app::LiveDrawing& live, const Style& style)
         const auto chosen =
             ui.field(readable(name), field, get(style, name), followed(field, live.session().settings()));
         if (!chosen) continue;
-        live.edits().change_look(live.selection().object, field.name,
-                                 [name, value = *chosen](MeshData& data) { set(data.style, name, value); });
+        live.edits().change_look(live.selection().object, field.name, *chosen);
     }
 }
 

@@ -229,13 +229,7 @@ void View::tell_everything(ClientId client) {
 
 void View::take_settings(const Settings& settings) {
     Own& own = *own_;
-    std::vector<std::pair<std::string, Value>> changed;
-    for (const Field& field : fields()) {
-        const Value now = field.get(settings), before = field.get(own.given);
-        const bool same =
-            now.state == before.state && (now.state != Value::State::given || now.data == before.data);
-        if (!same) changed.emplace_back(field.name, now);
-    }
+    const auto changed = app::changed_choices(own.given, settings);
     own.given = settings;
     if (changed.empty()) return;
     own.live.edits().change_settings([&](Settings& all) {

@@ -137,9 +137,7 @@ void View::obey(ClientId, const ShowObject& message) {
     Own& own = *own_;
     if (!app::node_named(own.session.scene(), message.object))
         throw NameError(fmt::format("there is no object '{}'", message.object));
-    own.live.edits().change_look(message.object, "visible", [visible = message.visible](MeshData& data) {
-        data.style.visible = visible;
-    });
+    own.live.edits().change_look(message.object, "style.visible", {message.visible});
 }
 
 void View::obey(ClientId, const Select& message) {
