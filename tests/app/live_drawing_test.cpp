@@ -183,6 +183,19 @@ TEST_F(LiveDrawingTest, UndoLeavesWhatAProgramHasSet) {
     EXPECT_TRUE(settings.tonemap.exposure.is_pinned());
 }
 
+TEST_F(LiveDrawingTest, WhatAHandlerOfTheProgramSetsIsTheProgramsToo) {
+    settle();
+    Settings& settings = session_.settings();
+    live_.handlers().add([&](const InputEvent& event) {
+        if (event.kind == Kind::key_down && event.key == 'P') settings.tonemap.exposure = 4;
+        return false;
+    });
+    step({key('P')});
+    settle();
+    ASSERT_TRUE(settings.tonemap.exposure.is_pinned());
+    EXPECT_FALSE(live_.edits().can_undo());
+}
+
 // A client without panels has no screen of its own to record: the form's wish for it is none.
 TEST_F(LiveDrawingTest, RecordsACameraPathAndShowsItsFrames) {
     namespace fs = std::filesystem;

@@ -59,6 +59,19 @@ class UserPanel : public testing::Test {
     LiveView view_{session_};
 };
 
+TEST_F(UserPanel, WhatItSetsIsTheProgramsAndNotUndone) {
+    session_.settings().background.color = {1, 0, 0};
+    settle();
+    session_.settings().background.color = {0, 1, 0};
+    settle();
+    view_.add_panel("Light", [&](app::Widgets&) { session_.settings().tonemap.exposure_compensation = 2; });
+    settle();
+    view_.drawing().edits().undo();
+    EXPECT_EQ(session_.settings().background.color, Vec3(1, 0, 0));
+    EXPECT_EQ(session_.settings().tonemap.exposure_compensation, 2);
+    EXPECT_FALSE(view_.drawing().edits().can_undo());
+}
+
 TEST_F(UserPanel, WidgetsTakeWhatIsClicked) {
     double rate = 0.1;
     int count = 3, clicks = 0;

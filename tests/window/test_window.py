@@ -164,6 +164,33 @@ def test_typing_into_a_panel_is_not_for_the_camera(window):
     assert np.array_equal(window.view.camera.position, before)
 
 
+def test_undo_takes_back_what_the_user_did_and_leaves_what_the_program_has_set(window):
+    view, ball = window.view, window.view.scene.get("ball")
+    view.scene.show(easypbr.shapes.box((1, 1, 1)), "box")
+    window.settle()
+    x0, y0, x1, y1 = window.state["places"]["Scene/visible ball"]
+    window.mouse("mousemove", (x0 + x1) // 2, (y0 + y1) // 2, "mousedown", 1, "mouseup", 1)
+    window.update(5)
+    assert ball.style.visible is False
+    steps = iter(range(10**6))
+
+    @view.before_draw
+    def program():
+        view.settings["tonemap.exposure_compensation"] = 0.001 * next(steps)
+
+    window.update(10)
+    view.camera = easypbr.Camera.look_at((0, 0, 7), (0, 0, 0))
+    window.update(5)
+    ball.style.colormap = "turbo"
+    window.key("ctrl+z")
+    assert ball.style.visible is not False
+    assert view.settings["tonemap.exposure_compensation"] > 0.01
+    assert np.allclose(view.camera.position, (0, 0, 7))
+    window.key("ctrl+y")
+    assert ball.style.visible is False
+    assert ball.style.colormap == "turbo"
+
+
 def test_the_picture_follows_a_resized_window(window):
     window.display.run("wmctrl", "-r", window.title, "-e", "0,-1,-1,1000,500")
     wait_until(lambda: window.update() and window.state["size"] == [1000, 500])

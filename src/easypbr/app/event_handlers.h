@@ -22,6 +22,7 @@ class EventHandlers {
     /// Returns a number for remove(). Throws ArgumentError for a handler that is no function.
     int add(EventHandler handler);
     void remove(int number) { handlers_.erase(number); }
+    bool empty() const { return handlers_.empty(); }
     /// A number that no handler has.
     int next_number() { return next_++; }
 

@@ -59,10 +59,10 @@ void LiveDrawing::begin_frame(Vec2i size, double seconds) {
         InputEvent event;
         event.kind = Kind::resize;
         event.size = size;
-        handlers_.offer(event);
+        offer_to_handlers(event);
     }
-    edits_.keep_chosen();
     files_.advance(seconds);
+    edits_.keep_chosen();
 }
 
 void LiveDrawing::leave(const InputEvent& event) {
@@ -76,7 +76,20 @@ bool LiveDrawing::offer(const InputEvent& event) {
         if (std::exchange(pointer_, event.position) != event.position) navigation_.point_elsewhere();
         picture_.point_at(pointer_, true);
     }
-    return handlers_.offer(event);
+    return offer_to_handlers(event);
+}
+
+bool LiveDrawing::offer_to_handlers(const InputEvent& event) {
+    if (handlers_.empty()) return false;
+    bool taken = false;
+    edits_.as_program([&] { taken = handlers_.offer(event); });
+    return taken;
+}
+
+std::string LiveDrawing::call_panel(const std::string& name, Widgets& widgets) {
+    std::string error;
+    edits_.as_program([&] { error = panels_.call(name, widgets); });
+    return error;
 }
 
 void LiveDrawing::handle(const InputEvent& event) {

@@ -144,6 +144,8 @@ class LiveDrawing {
     Notifications& notifications() { return notifications_; }
     EventHandlers& handlers() { return handlers_; }
     UserPanels& panels() { return panels_; }
+    /// UserPanels::call(); what the function sets is the program's, as what handlers() set.
+    std::string call_panel(const std::string& name, Widgets& widgets);
     SceneFiles& files() { return files_; }
     Clipboard& clipboard() { return clipboard_; }
     LiveWishes& wishes() { return wishes_; }
@@ -164,6 +166,7 @@ class LiveDrawing {
     struct Own;
     LiveDrawing(Session& session, std::unique_ptr<Own> own);
 
+    bool offer_to_handlers(const InputEvent& event);
     bool shortcut(const InputEvent& event);
     void control_shortcut(int key, bool shift);
     void move_camera(const InputEvent& event);

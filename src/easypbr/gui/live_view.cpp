@@ -191,7 +191,7 @@ bool LiveView::draw_screen(double seconds, bool always) {
     const bool changed = gui_.lay_out(state_, seconds, live_.picture().texture(), [&] {
         if (!state_.panels.shown) return;
         images_.draw(state_);
-        user_panels_.draw(live_.panels(), state_);
+        user_panels_.draw(state_);
     });
     if (!always && !changed && !is_new) return false;
     const float grey[4] = {0.25f, 0.25f, 0.25f, 1};

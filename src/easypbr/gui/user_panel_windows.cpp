@@ -30,7 +30,8 @@ UserPanelWindows::Window& UserPanelWindows::window_of(const app::UserPanels& pan
     return window;
 }
 
-void UserPanelWindows::draw(app::UserPanels& panels, const GuiState& state) {
+void UserPanelWindows::draw(GuiState& state) {
+    const app::UserPanels& panels = state.live.panels();
     const float top = ImGui::GetFrameHeight() + user_panel_gap * state.screen.scale;
     float x = (left_width + user_panel_gap) * state.screen.scale;
     rescaled_ = std::exchange(scale_, state.screen.scale) != state.screen.scale;
@@ -38,13 +39,13 @@ void UserPanelWindows::draw(app::UserPanels& panels, const GuiState& state) {
     // By name, for functions may add and remove panels.
     for (const std::string& name : panels.names()) {
         if (panels.revision(name) == 0 || !window_of(panels, name).open) continue;
-        draw_panel(panels, name, state.screen.scale, {x, top}, float(state.screen.size.y()));
+        draw_panel(state, name, {x, top});
         x += (user_panel_width + user_panel_gap) * state.screen.scale;
     }
 }
 
-void UserPanelWindows::draw_panel(app::UserPanels& panels, const std::string& name, float scale, Vec2 at,
-                                  float bottom) {
+void UserPanelWindows::draw_panel(GuiState& state, const std::string& name, Vec2 at) {
+    const float scale = state.screen.scale, bottom = float(state.screen.size.y());
     const float width = user_panel_width * scale;
     ImGui::SetNextWindowPos(ImVec2(at.x(), at.y()), rescaled_ ? ImGuiCond_Always : ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, bottom - at.y()));
@@ -55,12 +56,12 @@ void UserPanelWindows::draw_panel(app::UserPanels& panels, const std::string& na
         {
             const GuiPause pause;
             ImGuiWidgets widgets(pause.context(), scale, name);
-            error = panels.call(name, widgets);
+            error = state.live.call_panel(name, widgets);
         }
         if (!error.empty()) error_text(error);
     }
     ImGui::End();
-    window_of(panels, name).open &= open;
+    window_of(state.live.panels(), name).open &= open;
 }
 
 void UserPanelWindows::menu(const app::UserPanels& panels) {

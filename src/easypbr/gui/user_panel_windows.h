@@ -13,7 +13,7 @@ class UserPanelWindows {
   public:
     /// Draws all that are open, between ImGui's beginning and end of a frame. No lock of ImGui's is held
     /// while a function runs. What it throws is shown in its panel; the next frame calls it again.
-    void draw(app::UserPanels& panels, const GuiState& state);
+    void draw(GuiState& state);
     /// A line for each in the menu of panels.
     void menu(const app::UserPanels& panels);
 
@@ -23,7 +23,7 @@ class UserPanelWindows {
         uint64_t revision = 0;  ///< of the panel that it was closed for
     };
     Window& window_of(const app::UserPanels& panels, const std::string& name);
-    void draw_panel(app::UserPanels& panels, const std::string& name, float scale, Vec2 at, float bottom);
+    void draw_panel(GuiState& state, const std::string& name, Vec2 at);
 
     std::map<std::string, Window> windows_;
     float scale_ = 0;  ///< of the last frame

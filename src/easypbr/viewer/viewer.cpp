@@ -46,13 +46,14 @@ std::string title_of(const Scene& scene) {
 
 struct Viewer::Window {
     explicit Window(app::Session& session, app::Recorder& recorder, app::AnimationPlayer& player)
-        : live(session, recorder, player) {}
+        : live(session, recorder, player), seen(session.settings()) {}
 
     gui::LiveView live;
     std::unique_ptr<gui::Window> window;
     std::string title;
     bool closed = false, updating = false;
     std::optional<Clock::time_point> last;
+    Settings seen;  ///< at the end of the last draw()
     Callbacks before, after;
 
     // A copy, as they may add and remove others.
@@ -74,6 +75,19 @@ struct Viewer::Window {
                                       [this](const std::string& text) {
                                           if (window) window->set_clipboard(text);
                                       }};
+    }
+
+    /// Draws by a function. How the settings were changed since the last time is the program's doing.
+    template <class Draw>
+    auto draw(Draw&& function) {
+        app::LiveDrawing& drawing = live.drawing();
+        drawing.edits().leave_to_program(seen);
+        struct Seen {
+            Settings& seen;
+            const Settings& settings;
+            ~Seen() { seen = settings; }
+        } const at_end{seen, drawing.session().settings()};
+        return function();
     }
 
     /// Seconds since the last call.
@@ -167,7 +181,8 @@ bool Viewer::update_window() {
     else if (!w.live.is_recording())
         parts_->clock.tick();
     w.call(w.before);
-    const bool changed = w.live.update(events, w.window->size(), w.window->scale(), seconds);
+    const bool changed =
+        w.draw([&] { return w.live.update(events, w.window->size(), w.window->scale(), seconds); });
     w.call(w.after);
     tell_servers();
     if (w.window->should_close() || w.live.wants_to_close()) {
@@ -240,7 +255,8 @@ void Viewer::remove_callback(int number) {
 }
 
 Image Viewer::screenshot(std::optional<Vec2i> size, float scale) {
-    return live().finished_screen(size.value_or(settings().image.size), scale);
+    Window& w = window();
+    return w.draw([&] { return w.live.finished_screen(size.value_or(settings().image.size), scale); });
 }
 
 Scene& default_scene() {
