@@ -42,8 +42,22 @@ class WatchedFiles : public testing::Test {
     Clock clock_;
     AnimationPlayer player_{clock_};
     Notifications notifications_;
-    SceneFiles files_{session_, player_, notifications_};
+    Edits edits_{session_};
+    SceneFiles files_{session_, player_, notifications_, edits_};
 };
+
+/// A triangle and a point light, as glTF; `intensity` in candela.
+std::string lit_triangle(int intensity) {
+    return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","name":"lamp","intensity":)" +
+           std::to_string(intensity) + R"(}]}},
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"nodes":[{"mesh":0},{"name":"lamp","extensions":{"KHR_lights_punctual":{"light":0}}}],
+"scenes":[{"nodes":[0,1]}],"scene":0})";
+}
 
 TEST_F(WatchedFiles, MaterialsAndTexturesAreReadAgain) {
     const std::string red = "newmtl m\nKd 1 0 0\n", blue = "newmtl m\nKd 0 0 1\nmap_Kd t.png\n";
@@ -67,6 +81,53 @@ TEST_F(WatchedFiles, MaterialsAndTexturesAreReadAgain) {
     fs::last_write_time(folder_ / "t.png", time_);
     EXPECT_TRUE(reloads());
     EXPECT_EQ(session_.scene().get("a").snapshot()->materials.at(0).base_color_texture.image->width(), 3);
+}
+
+// What a person has done by hand stays, and undo goes back to what the file holds now.
+TEST_F(WatchedFiles, PosesAndLightsOfAPersonAreKept) {
+    write("a.gltf", lit_triangle(5));
+    files_.open(folder_ / "a.gltf");
+    files_.watch(folder_ / "a.gltf", "a");
+    ASSERT_EQ(session_.scene().light_names().size(), 1u);
+    const std::string lamp = session_.scene().light_names()[0];
+    const auto place = [&] { return session_.scene().get("a").T_parent_mesh().translation().eval(); };
+    ASSERT_EQ(session_.scene().light(lamp).intensity, 5);
+    write("a.gltf", lit_triangle(6));
+    ASSERT_TRUE(reloads());
+    ASSERT_EQ(session_.scene().light(lamp).intensity, 6);
+    edits_.note();
+    edits_.will_move("a");
+    session_.scene().get("a").translate(Vec3d(1, 0, 0));
+    edits_.will_change_light(lamp);
+    session_.scene().remove_light(lamp);
+    edits_.note();
+    write("a.gltf", lit_triangle(7));
+    ASSERT_TRUE(reloads());
+    EXPECT_EQ(place(), Vec3d(1, 0, 0));
+    EXPECT_TRUE(session_.scene().light_names().empty());
+    edits_.undo();
+    EXPECT_EQ(place(), Vec3d(0, 0, 0));
+    ASSERT_EQ(session_.scene().light_names(), std::vector<std::string>{lamp});
+    EXPECT_EQ(session_.scene().light(lamp).intensity, 7);
+    edits_.redo();
+    EXPECT_EQ(place(), Vec3d(1, 0, 0));
+    EXPECT_TRUE(session_.scene().light_names().empty());
+}
+
+TEST_F(WatchedFiles, WhatWasRemovedIsNotShownAgain) {
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    write("a.obj", triangle);
+    files_.open(folder_ / "a.obj");
+    files_.watch(folder_ / "a.obj", "a");
+    session_.scene().remove("a");
+    write("a.obj", triangle + "f 3 2 1\n");
+    EXPECT_FALSE(reloads());
+    EXPECT_FALSE(session_.scene().contains("a"));
+    // The program shows it again: it is followed again.
+    session_.scene().show(io::load_scene(folder_ / "a.obj").mesh, "a");
+    write("a.obj", triangle);
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(session_.scene().get("a").F().rows(), 1);
 }
 
 }  // namespace

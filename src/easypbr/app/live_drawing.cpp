@@ -34,7 +34,7 @@ LiveDrawing::LiveDrawing(Session& session, Recorder& recorder, AnimationPlayer& 
       picture_(session),
       navigation_(session, picture_),
       edits_(session),
-      files_(session, player, notifications_),
+      files_(session, player, notifications_, edits_),
       recording_(session, recorder) {
     const auto text = std::make_shared<std::string>();
     clipboard_.read = [text] { return *text; };

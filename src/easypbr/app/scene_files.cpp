@@ -31,14 +31,6 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
     return name;
 }
 
-void show_loaded(Session& session, AnimationPlayer& player, const io::LoadedScene& loaded,
-                 const std::string& name) {
-    session.scene().show(loaded.mesh, name);
-    if (!loaded.animations.empty()) player.add(name, loaded.animations, session.scene());
-    for (const auto& [light, value] : loaded.lights)
-        session.scene().set_light(light_name(name, light), value);
-}
-
 /// Images that a mesh and what hangs from it were textured with.
 void add_textures(const Mesh& mesh, std::set<fs::path>& files) {
     const auto data = mesh.snapshot();
@@ -84,9 +76,16 @@ void SceneFiles::open(const fs::path& path) {
 
 std::string SceneFiles::add(const io::LoadedScene& loaded, const fs::path& path) {
     std::string name = unique_name(session_.scene(), path.stem().string());
-    show_loaded(session_, player_, loaded, name);
+    show(loaded, name);
+    for (const auto& [light, value] : loaded.lights)
+        session_.scene().set_light(light_name(name, light), value);
     notifications_.add("Added " + name);
     return name;
+}
+
+void SceneFiles::show(const io::LoadedScene& loaded, const std::string& name) {
+    session_.scene().show(loaded.mesh, name);
+    if (!loaded.animations.empty()) player_.add(name, loaded.animations, session_.scene());
 }
 
 void SceneFiles::close(const std::string& name) {
@@ -124,14 +123,19 @@ void SceneFiles::advance(double seconds) {
                 const auto time = fs::last_write_time(path, gone);
                 changed |= !gone && std::exchange(known, time) != time;
             }
-            if (!changed) continue;
-            show_loaded(session_, player_, io::load_scene(file.path, load_options(session_.settings())),
-                        file.name);
-            note_files(file);
-            notifications_.add("Reloaded " + file.name);
+            if (changed && session_.scene().contains(file.name)) reload(file);
         } catch (const Error& error) {
             notifications_.add(error.what(), true);
         }
+}
+
+void SceneFiles::reload(Watched& file) {
+    const io::LoadedScene loaded = io::load_scene(file.path, load_options(session_.settings()));
+    show(loaded, file.name);
+    for (const auto& [light, value] : loaded.lights) edits_.reload_light(light_name(file.name, light), value);
+    edits_.keep_chosen();
+    note_files(file);
+    notifications_.add("Reloaded " + file.name);
 }
 
 void SceneFiles::save_settings(const fs::path& path) {

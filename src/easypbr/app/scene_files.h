@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/app/animation_player.h"
+#include "easypbr/app/edits.h"
 #include "easypbr/app/notifications.h"
 #include "easypbr/app/session.h"
 
@@ -24,8 +25,8 @@ io::LoadOptions load_options(const Settings& settings, const std::string& format
 class SceneFiles {
   public:
     /// All must outlive it.
-    SceneFiles(Session& session, AnimationPlayer& player, Notifications& notifications)
-        : session_(session), player_(player), notifications_(notifications) {}
+    SceneFiles(Session& session, AnimationPlayer& player, Notifications& notifications, Edits& edits)
+        : session_(session), player_(player), notifications_(notifications), edits_(edits) {}
 
     /// Adds what a file holds under the file's name, made unique; pictures with high range become the
     /// environment. Throws FileError, FormatError.
@@ -37,7 +38,8 @@ class SceneFiles {
     void close(const std::string& name);
 
     /// Shows the file again under `name` whenever it, an image that textures it, or a file that it names for
-    /// its materials (MTL) or buffers (glTF) changes.
+    /// its materials (MTL) or buffers (glTF) changes, while the scene has the name. What a person has changed
+    /// or removed by hand stays so, see Edits.
     void watch(const std::filesystem::path& path, const std::string& name);
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
     void advance(double seconds);
@@ -53,10 +55,13 @@ class SceneFiles {
     };
     /// Adds the files that the watched one is made of now.
     void note_files(Watched& watched) const;
+    void show(const io::LoadedScene& loaded, const std::string& name);
+    void reload(Watched& file);
 
     Session& session_;
     AnimationPlayer& player_;
     Notifications& notifications_;
+    Edits& edits_;
     std::vector<Watched> watched_;
     double since_watch_ = 0;
 };
