@@ -18,7 +18,7 @@ struct Edits::Shown {
 namespace {
 
 using Arrays = std::shared_ptr<const MeshData>;
-using Kind = Property::Kind;
+using PropertyKind = Property::Kind;
 
 std::optional<Light> light_named(const Scene& scene, const std::string& name) {
     const auto names = scene.light_names();
@@ -27,14 +27,14 @@ std::optional<Light> light_named(const Scene& scene, const std::string& name) {
 }
 
 Content content_of(const Mesh& node, const Property& property) {
-    if (property.kind == Kind::arrays) return node.snapshot();
-    if (property.kind == Kind::pose) return node.T_parent_mesh();
+    if (property.kind == PropertyKind::arrays) return node.snapshot();
+    if (property.kind == PropertyKind::pose) return node.T_parent_mesh();
     return look_values(*node.snapshot(), property.look);
 }
 
 /// Nothing where there is no such object.
 std::optional<Content> content_of(const Scene& scene, const Property& property) {
-    if (property.kind == Kind::light) return light_named(scene, property.of);
+    if (property.kind == PropertyKind::light) return light_named(scene, property.of);
     const std::optional<Mesh> node = node_named(scene, property.of);
     return node ? std::optional(content_of(*node, property)) : std::nullopt;
 }
@@ -111,14 +111,14 @@ void Edits::begin(const Property& property) {
     std::optional<Content> now = content_of(session_.scene(), property);
     if (!now) return;
     programs_.insert_or_assign(property, std::move(*now));
-    if (property.kind == Kind::light) return;
+    if (property.kind == PropertyKind::light) return;
     if (const std::optional<Mesh> node = node_named(session_.scene(), property.of))
         shown_->objects.try_emplace(property.of, *node);
 }
 
 void Edits::change_look(const std::string& object, const std::string& property, const Value& value) {
     if (!node_named(session_.scene(), object)) return;
-    const Property changed{object, Kind::look, property};
+    const Property changed{object, PropertyKind::look, property};
     begin(changed);
     Put{session_.scene(), changed}(value);
     chosen_[changed] = std::make_shared<const Content>(value);
@@ -127,7 +127,7 @@ void Edits::change_look(const std::string& object, const std::string& property, 
 void Edits::change_data(const std::string& object, const std::function<void(MeshData&)>& change) {
     std::optional<Mesh> node = node_named(session_.scene(), object);
     if (!node) return;
-    const Property changed{object, Kind::arrays};
+    const Property changed{object, PropertyKind::arrays};
     const Content* left = content_in(chosen_, changed);
     // The program has shown others since: there is no way back from them to what was before.
     if (left && !same_vertices(*left, node->snapshot())) {
@@ -142,13 +142,13 @@ void Edits::change_data(const std::string& object, const std::function<void(Mesh
 void Edits::keep_chosen() {
     std::map<std::string, Mesh> present;
     for (auto& [property, programs] : programs_) {
-        if (property.kind == Kind::light) continue;
+        if (property.kind == PropertyKind::light) continue;
         const std::optional<Mesh> node = node_named(session_.scene(), property.of);
         if (!node) continue;
         present.insert_or_assign(property.of, *node);
         const auto known = shown_->objects.find(property.of);
         if (known == shown_->objects.end() || known->second == *node) continue;
-        if (property.kind == Kind::arrays) continue;
+        if (property.kind == PropertyKind::arrays) continue;
         programs = content_of(*node, property);
         if (const Content* chosen = content_in(chosen_, property))
             std::visit(Put{session_.scene(), property}, *chosen);
@@ -157,19 +157,19 @@ void Edits::keep_chosen() {
 }
 
 void Edits::will_move(const std::string& object) {
-    const Property moved{object, Kind::pose};
+    const Property moved{object, PropertyKind::pose};
     begin(moved);
     touched_.insert(moved);
 }
 
 void Edits::will_change_light(const std::string& name) {
-    const Property changed{name, Kind::light};
+    const Property changed{name, PropertyKind::light};
     begin(changed);
     touched_.insert(changed);
 }
 
 void Edits::reload_light(const std::string& name, const Light& light) {
-    const Property property{name, Kind::light};
+    const Property property{name, PropertyKind::light};
     if (const auto known = programs_.find(property); known != programs_.end())
         known->second = std::optional(light);
     if (!chosen_.contains(property) && !touched_.contains(property)) session_.scene().set_light(name, light);
@@ -213,7 +213,7 @@ void Edits::note() {
 void Edits::restore(const Property& property, const Content* from, const Content* to) {
     const auto programs = programs_.find(property);
     if (programs == programs_.end()) return;
-    if (property.kind == Kind::arrays) {
+    if (property.kind == PropertyKind::arrays) {
         // The program may have shown others since, which stay.
         const std::optional<Content> now = content_of(session_.scene(), property);
         if (!now || !same_vertices(*now, from ? *from : programs->second)) return;
