@@ -26,20 +26,20 @@ std::optional<Light> light_named(const Scene& scene, const std::string& name) {
     return scene.light(name);
 }
 
-Content content_of(const Mesh& node, const Property& property) {
+PropertyValue value_now(const Mesh& node, const Property& property) {
     if (property.kind == PropertyKind::arrays) return node.snapshot();
     if (property.kind == PropertyKind::pose) return node.T_parent_mesh();
     return look_values(*node.snapshot(), property.look);
 }
 
 /// Nothing where there is no such object.
-std::optional<Content> content_of(const Scene& scene, const Property& property) {
+std::optional<PropertyValue> value_now(const Scene& scene, const Property& property) {
     if (property.kind == PropertyKind::light) return light_named(scene, property.of);
     const std::optional<Mesh> node = node_named(scene, property.of);
-    return node ? std::optional(content_of(*node, property)) : std::nullopt;
+    return node ? std::optional(value_now(*node, property)) : std::nullopt;
 }
 
-/// Gives a property of an object, or a light, its content.
+/// Gives a property of an object, or a light, its value.
 struct Put {
     Scene& scene;
     const Property& property;
@@ -69,11 +69,11 @@ struct Put {
     }
 };
 
-bool same_vertices(const Content& a, const Content& b) {
+bool same_vertices(const PropertyValue& a, const PropertyValue& b) {
     return std::get<Arrays>(a)->V.revision() == std::get<Arrays>(b)->V.revision();
 }
 
-const Content* content_in(const Choices& choices, const Property& property) {
+const PropertyValue* choice_in(const Choices& choices, const Property& property) {
     const auto found = choices.find(property);
     return found == choices.end() ? nullptr : found->second.get();
 }
@@ -108,7 +108,7 @@ Edits::~Edits() = default;
 void Edits::begin(const Property& property) {
     keep_chosen();
     if (chosen_.contains(property) || touched_.contains(property)) return;
-    std::optional<Content> now = content_of(session_.scene(), property);
+    std::optional<PropertyValue> now = value_now(session_.scene(), property);
     if (!now) return;
     programs_.insert_or_assign(property, std::move(*now));
     if (property.kind == PropertyKind::light) return;
@@ -121,14 +121,14 @@ void Edits::change_look(const std::string& object, const std::string& property, 
     const Property changed{object, PropertyKind::look, property};
     begin(changed);
     Put{session_.scene(), changed}(value);
-    chosen_[changed] = std::make_shared<const Content>(value);
+    chosen_[changed] = std::make_shared<const PropertyValue>(value);
 }
 
 void Edits::change_data(const std::string& object, const std::function<void(MeshData&)>& change) {
     std::optional<Mesh> node = node_named(session_.scene(), object);
     if (!node) return;
     const Property changed{object, PropertyKind::arrays};
-    const Content* left = content_in(chosen_, changed);
+    const PropertyValue* left = choice_in(chosen_, changed);
     // The program has shown others since: there is no way back from them to what was before.
     if (left && !same_vertices(*left, node->snapshot())) {
         history_.forget(changed);
@@ -136,7 +136,7 @@ void Edits::change_data(const std::string& object, const std::function<void(Mesh
     }
     begin(changed);
     node->edit(change);
-    chosen_[changed] = std::make_shared<const Content>(node->snapshot());
+    chosen_[changed] = std::make_shared<const PropertyValue>(node->snapshot());
 }
 
 void Edits::keep_chosen() {
@@ -149,8 +149,8 @@ void Edits::keep_chosen() {
         const auto known = shown_->objects.find(property.of);
         if (known == shown_->objects.end() || known->second == *node) continue;
         if (property.kind == PropertyKind::arrays) continue;
-        programs = content_of(*node, property);
-        if (const Content* chosen = content_in(chosen_, property))
+        programs = value_now(*node, property);
+        if (const PropertyValue* chosen = choice_in(chosen_, property))
             std::visit(Put{session_.scene(), property}, *chosen);
     }
     shown_->objects = std::move(present);
@@ -205,17 +205,17 @@ bool Edits::has_news() const {
 
 void Edits::note() {
     for (const Property& property : std::exchange(touched_, {}))
-        if (std::optional<Content> now = content_of(session_.scene(), property))
-            chosen_[property] = std::make_shared<const Content>(std::move(*now));
+        if (std::optional<PropertyValue> now = value_now(session_.scene(), property))
+            chosen_[property] = std::make_shared<const PropertyValue>(std::move(*now));
     history_.note(session_.settings(), chosen_);
 }
 
-void Edits::restore(const Property& property, const Content* from, const Content* to) {
+void Edits::restore(const Property& property, const PropertyValue* from, const PropertyValue* to) {
     const auto programs = programs_.find(property);
     if (programs == programs_.end()) return;
     if (property.kind == PropertyKind::arrays) {
         // The program may have shown others since, which stay.
-        const std::optional<Content> now = content_of(session_.scene(), property);
+        const std::optional<PropertyValue> now = value_now(session_.scene(), property);
         if (!now || !same_vertices(*now, from ? *from : programs->second)) return;
     } else if (!from) {
         begin(property);
@@ -227,7 +227,7 @@ void Edits::restore(const History::State& state) {
     Choices all = chosen_;
     all.insert(state.choices.begin(), state.choices.end());
     for (const auto& [property, choice] : all) {
-        const Content *from = content_in(chosen_, property), *to = content_in(state.choices, property);
+        const PropertyValue *from = choice_in(chosen_, property), *to = choice_in(state.choices, property);
         if (from != to) restore(property, from, to);
     }
     session_.replace_settings(*state.settings);

@@ -66,15 +66,15 @@ class Edits {
     void begin(const Property& property);
     void restore(const History::State& state);
     /// From one choice to another; none: what the program has.
-    void restore(const Property& property, const Content* from, const Content* to);
+    void restore(const Property& property, const PropertyValue* from, const PropertyValue* to);
     /// Something was changed since the last note().
     bool has_news() const;
 
     Session& session_;
     History history_;
-    Choices chosen_;                        ///< what note() will note, but for `touched_`
-    std::map<Property, Content> programs_;  ///< what the program has in place of the choices
-    std::set<Property> touched_;            ///< poses and lights that were changed since the last note()
+    Choices chosen_;                              ///< what note() will note, but for `touched_`
+    std::map<Property, PropertyValue> programs_;  ///< what the program has in place of the choices
+    std::set<Property> touched_;  ///< poses and lights that were changed since the last note()
     std::unique_ptr<Shown> shown_;
 };
 

@@ -43,10 +43,10 @@ struct Property {
 
 /// What a property is: the arrays of an object, its pose, a value for all of it or one for each material, a
 /// light, or none where it is removed.
-using Content = std::variant<std::shared_ptr<const MeshData>, Eigen::Affine3d, Value, std::vector<Value>,
-                             std::optional<Light>>;
+using PropertyValue = std::variant<std::shared_ptr<const MeshData>, Eigen::Affine3d, Value,
+                                   std::vector<Value>, std::optional<Light>>;
 /// What a person has chosen, each choice an object of its own; the rest is the program's.
-using Choices = std::map<Property, std::shared_ptr<const Content>>;
+using Choices = std::map<Property, std::shared_ptr<const PropertyValue>>;
 
 /// States of settings and choices, oldest first. What is noted after undo() drops what was undone.
 class History {
