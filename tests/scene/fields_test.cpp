@@ -256,6 +256,20 @@ TEST(Fields, SuggestNames) {
               "'tonemap.exposure_compensation')");
 }
 
+TEST(Fields, SuggestOtherProgramsWordsWithinTheGroup) {
+    const auto hint = [](const std::string& name, const std::string& called) {
+        EXPECT_EQ(message_of(name, "red"),
+                  "there is no setting '" + name + "' (it is called '" + called + "')");
+    };
+    hint("background.colour", "background.color");
+    hint("lights.key.colour", "lights.key.color");
+    hint("ground.colour", "ground.plane_color");
+    hint("material.colour", "material.color");
+    hint("style.colour", "material.color");
+    hint("colour", "material.color");
+    hint("background.alpha", "material.opacity");
+}
+
 TEST(Fields, KeepLatchedValuesAutomatic) {
     Settings settings;
     settings.camera.position.latch(Vec3d(1, 2, 3));

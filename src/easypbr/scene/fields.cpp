@@ -42,11 +42,29 @@ std::string group_hint(std::string_view name) {
     return count == 0 ? "" : fmt::format(" (a group of settings: {}{})", members, count > 3 ? ", ..." : "");
 }
 
-/// Names that begin with what was written, then names that are nearly it, then names whose last part nearly
-/// is.
+/// The setting in the group of `wrong` that `meant` is another word for: of "background.colour"
+/// "background.color", of "ground.colour" "ground.plane_color". Empty: none, or several.
+std::string meant_in_group(std::string_view wrong, const Synonym& meant) {
+    const size_t dot = wrong.rfind('.');
+    if (dot == wrong.npos) return {};
+    const std::string_view group = wrong.substr(0, dot + 1);
+    const std::string last(last_part(meant.setting));
+    std::vector<std::string> names;
+    for (const Field& field : fields()) {
+        if (!field.name.starts_with(group)) continue;
+        if (field.name.substr(group.size()) == last) return field.name;
+        if (field.name.ends_with("_" + last)) names.push_back(field.name);
+    }
+    return names.size() == 1 ? names.front() : "";
+}
+
+/// Words of other programs, then names that begin with what was written, then names that are nearly it, then
+/// names whose last part nearly is.
 std::string hint_for(std::string_view wrong) {
-    if (const Synonym* meant = synonym(last_part(wrong)); meant && !meant->setting.empty())
-        return fmt::format(" (it is called '{}')", meant->setting);
+    if (const Synonym* meant = synonym(last_part(wrong)); meant && !meant->setting.empty()) {
+        const std::string own = meant_in_group(wrong, *meant);
+        return fmt::format(" (it is called '{}')", own.empty() ? meant->setting : own);
+    }
     if (const std::string group = group_hint(wrong); !group.empty()) return group;
     std::vector<std::string> names, last_parts;
     for (const Field& field : fields()) {
