@@ -216,7 +216,7 @@ def test_another_file_or_none_by_the_environment(render, environment, configured
 
 
 @pytest.mark.parametrize("entries, message", [
-    ("[{", "config.json: .*parse error"),
+    ("[{", "cannot read .*config.json, line 1, column 3: expected JSON, got the end of the text"),
     ({"files": "*"}, "expected a list of entries"),
     ([3], "entry 1: expected {\"files\": "),
     ([{"settings": {}}, {"match": "*", "settings": {}}], "entry 2: there is no 'match': expected files and settings"),

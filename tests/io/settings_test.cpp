@@ -105,8 +105,9 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
 
 TEST(SettingsFile, SaysWhatIsWrong) {
     const std::vector<std::pair<std::string, std::string>> table = {
-        {"", "parse error"},
-        {"{\"easypbr\": 1,\n \"settings\": }", "line 2"},
+        {"", "cannot read look.json, line 1, column 1: expected JSON, got the end of the text"},
+        {"{\"easypbr\": 1,\n \"settings\": }",
+         "cannot read look.json, line 2, column 14: expected JSON, got '}'"},
         {"[]", "\"easypbr\": 1"},
         {"{}", "\"easypbr\": 1"},
         {"{\"easypbr\": 2}", "got 2"},

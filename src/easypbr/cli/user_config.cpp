@@ -10,6 +10,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/io/source/json_text.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/settings.h"
 
@@ -94,12 +95,7 @@ void apply_entry(const ConfigJson& entry, const std::vector<std::string>& files,
 }
 
 ConfigJson parsed(const fs::path& path) {
-    const FileBytes bytes(path);
-    try {
-        return ConfigJson::parse(bytes.text());
-    } catch (const ConfigJson::parse_error& error) {
-        throw FormatError(fmt::format("{}: {}", path.string(), error.what()));
-    }
+    return io::parse_json<ConfigJson>(FileBytes(path).text(), path.string());
 }
 
 }  // namespace

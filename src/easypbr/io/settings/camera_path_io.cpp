@@ -9,7 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/io/source/json_depth.h"
+#include "easypbr/io/source/json_text.h"
 
 namespace easypbr::io {
 namespace {
@@ -23,13 +23,8 @@ const std::vector<std::string> mode_names{"smooth", "linear"}, ease_names{"none"
 
 class PathReader {
   public:
-    PathReader(const std::string& text, const std::string& name) : name_(name) {
-        try {
-            check_json_depth(text, name_);
-            root_ = Json::parse(text);
-        } catch (const Json::exception& error) {
-            throw FormatError(fmt::format("{}: {}", name_, error.what()));
-        }
+    PathReader(const std::string& text, const std::string& name)
+        : name_(name), root_(parse_json<Json>(text, name)) {
         if (root_.is_array()) root_ = Json{{"keys", root_}};
         if (!root_.is_object()) fail("expected an object or a list of keys");
         check_names(root_, {mark, "mode", "ease", "closed", "axes", "segment_s", "keys", "orbit"},

@@ -10,7 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/settings/label_map_text.h"
-#include "easypbr/io/source/json_depth.h"
+#include "easypbr/io/source/json_text.h"
 #include "easypbr/scene/label_colors.h"
 
 namespace easypbr::io {
@@ -68,8 +68,7 @@ UnknownLabels unknown_of(const std::string& text) {
 }
 
 ReadMap read_json(std::string_view text, const std::string& file) {
-    check_json_depth(text, file);
-    const OrderedJson root = OrderedJson::parse(text);
+    const OrderedJson root = parse_json<OrderedJson>(text, file);
     ReadMap map;
     for (const auto& [key, value] : root.items()) {
         if (key == "name")

@@ -10,7 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/hash.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/io/source/json_depth.h"
+#include "easypbr/io/source/json_text.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/light_table.h"
 
@@ -63,13 +63,7 @@ class SettingsParser {
     explicit SettingsParser(const std::string& name) : name_(name) {}
 
     void parse(const std::string& text, SettingsFile& file) {
-        OrderedJson root;
-        try {
-            check_json_depth(text, name_);
-            root = OrderedJson::parse(text);
-        } catch (const OrderedJson::exception& error) {
-            fail(error.what());
-        }
+        OrderedJson root = parse_json<OrderedJson>(text, name_);
         if (!root.is_object() || !root.contains("easypbr")) fail("expected an object with \"easypbr\": 1");
         if (root["easypbr"] != format_version)
             fail(fmt::format("expected \"easypbr\": {}, got {}", format_version, root["easypbr"].dump()));

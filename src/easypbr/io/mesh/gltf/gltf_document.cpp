@@ -8,7 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/gltf/gltf_meshopt.h"
 #include "easypbr/io/source/base64.h"
-#include "easypbr/io/source/json_depth.h"
+#include "easypbr/io/source/json_text.h"
 
 namespace easypbr::io {
 namespace {
@@ -63,12 +63,7 @@ GltfDocument::GltfDocument(std::span<const std::byte> bytes, std::filesystem::pa
     : path_(std::move(path)) {
     if (bytes.empty()) fail("the file is empty");
     const std::string_view text = json_chunk(bytes);
-    check_json_depth(text, path_.string());
-    try {
-        root_ = Json::parse(text);
-    } catch (const Json::exception& error) {
-        fail(fmt::format("damaged JSON: {}", error.what()));
-    }
+    root_ = parse_json<Json>(text, path_.string());
     if (!root_.is_object()) fail("expected a JSON object");
     const Json* asset = member(root_, "asset");
     const std::string version = asset ? this->text(*asset, "version") : "";
