@@ -224,7 +224,9 @@ def test_another_file_or_none_by_the_environment(render, environment, configured
     ([{"files": 3, "settings": {}}], "entry 1: files: expected a pattern"),
     ([{"files": "*.never", "settings": {"image.sampels": 4}}], "entry 1: there is no setting 'image.sampels' .did you mean 'image.samples'"),
     ([{"settings": {"image.samples": "many"}}], "entry 1: setting 'image.samples': expected a whole number"),
-    ([{"settings": {"image.size": {"x": 3}}}], "entry 1: setting 'image.size': expected a text, a number"),
+    ([{"settings": {"image.size": {"x": 3}}}], "entry 1: setting 'image.size': expected 2 numbers, each .*, got {\"x\":3}"),
+    ([{"settings": {"camera.position": ["a"]}}], r"""entry 1: setting 'camera.position': expected 3 numbers, or 'auto' or 'follow', got \["a"\]"""),
+    ([{"settings": {"background.color": "whte"}}], "entry 1: setting 'background.color': expected a colour: .*, got 'whte' .did you mean 'white'"),
 ])  # fmt: skip
 def test_mistakes_name_the_file_and_the_entry(render, configured, sphere, entries, message):
     path = configured(entries)

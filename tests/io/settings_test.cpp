@@ -117,12 +117,18 @@ TEST(SettingsFile, SaysWhatIsWrong) {
         {"{\"easypbr\": 1, \"settings\": {\"image\": {\"samples\": \"many\"}}}", "image.samples"},
         {"{\"easypbr\": 1, \"settings\": {\"image\": {\"samples\": null}}}", "image.samples"},
         {"{\"easypbr\": 1, \"settings\": {\"image\": {\"samples\": {\"auto\": 3}}}}", "image.samples"},
-        {"{\"easypbr\": 1, \"settings\": {\"image\": {\"size\": [1, \"x\"]}}}", "image.size"},
+        {"{\"easypbr\": 1, \"settings\": {\"image\": {\"size\": [1, \"x\"]}}}",
+         "setting 'image.size': expected 2 numbers, each a whole number from 1 to 65536 pixels, got "
+         "[1,\"x\"]"},
+        {"{\"easypbr\": 1, \"settings\": {\"background\": {\"color\": \"whte\"}}}",
+         "setting 'background.color': expected a colour: '#rgb', '#rrggbb', a name of CSS such as white, or "
+         "3 "
+         "numbers from 0 to 1, got 'whte' (did you mean 'white'?)"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"type\": \"spott\"}}}", "did you mean 'spot'"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"colour\": [1, 1, 1]}}}", "colour"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"color\": [1, 1]}}}",
          "light 'a': color: expected 3 numbers, got (1, 1)"},
-        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"range\": null}}}", "light 'a': range: got null"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"range\": null}}}", "light 'a': range: expected"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"range\": 1e39}}}", "light 'a': range: expected"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"enabled\": 1}}}",
          "light 'a': enabled: expected true or false, got 1"},

@@ -199,6 +199,9 @@ TEST(Fields, SayWhatTheyExpected) {
               "setting 'tonemap.operator': expected one of aces, reinhard, agx, neutral, none, got 'acess' "
               "(did you mean "
               "'aces'?)");
+    EXPECT_EQ(message_of("background.color", "whte"),
+              "setting 'background.color': expected a colour: '#rgb', '#rrggbb', a name of CSS such as "
+              "white, or 3 numbers from 0 to 1, got 'whte' (did you mean 'white'?)");
     EXPECT_EQ(message_of("shading.multiple_scattering", "maybe"),
               "setting 'shading.multiple_scattering': expected true or false, got 'maybe'");
     EXPECT_EQ(message_of("camera.intrinsics", "1,2,3"),
@@ -232,6 +235,24 @@ TEST(Fields, RefuseValuesOfAnotherType) {
     EXPECT_THROW(set(settings, "tonemap.operator", {2.0}), ArgumentError);
     EXPECT_THROW(set(settings, "background.color", {0.5}), ArgumentError);
     EXPECT_THROW(set(settings, "camera.margin", {{}, Value::State::follow}), ArgumentError);
+}
+
+TEST(Fields, SayTheSameOfAValueThatNothingHolds) {
+    const auto rejected = [](const char* name, std::string_view given, std::string_view owner = {}) {
+        try {
+            reject_value(field(name), given, owner);
+        } catch (const ArgumentError& error) {
+            return std::string(error.what());
+        }
+    };
+    EXPECT_EQ(message_of("camera.position", "a,b"),
+              "setting 'camera.position': expected 3 numbers, or 'auto' or 'follow', got 'a,b'");
+    EXPECT_EQ(rejected("camera.position", "[\"a\"]"),
+              "setting 'camera.position': expected 3 numbers, or 'auto' or 'follow', got [\"a\"]");
+    EXPECT_EQ(rejected("camera.position", "[]", "mine: "),
+              "mine: camera.position: expected 3 numbers, or 'auto' or 'follow', got []");
+    EXPECT_EQ(rejected("style.flat", std::string(100, 'x')),
+              "setting 'style.flat': expected true or false, got " + std::string(80, 'x'));
 }
 
 TEST(Fields, SuggestNames) {

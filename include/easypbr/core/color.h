@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -37,8 +38,15 @@ inline Rgba8 opaque(const Rgb8& color) {
     return {color[0], color[1], color[2], 255};
 }
 
-/// sRGB colour in [0, 1] from '#rgb', '#rrggbb', 'r,g,b' (numbers in 0..1) or a name of CSS such as 'tomato'.
-/// Throws ArgumentError for anything else.
+/// What a colour is given as, for messages.
+inline constexpr const char* color_forms =
+    "'#rgb', '#rrggbb', a name of CSS such as white, or 3 numbers from 0 to 1";
+
+/// sRGB colour in [0, 1] from '#rgb', '#rrggbb', 'r,g,b' (numbers in 0..1) or a name of CSS such as 'tomato';
+/// none for anything else.
+std::optional<Vec3> find_color(std::string_view text);
+
+/// The same. Throws ArgumentError for anything else.
 Vec3 parse_color(std::string_view text);
 
 /// '#rrggbb' of an sRGB colour in [0, 1].

@@ -79,6 +79,10 @@ bool is_valid(const Field& field, const Value& value);
 /// setting, or, of another struct's field, of `owner` followed by its name ("light.", "light 'sun': ").
 Value checked(const FieldInfo& field, const Value& value, std::string_view owner = {});
 
+/// Throws the ArgumentError of checked() for what no Value holds, such as a list of texts. `given`: that, as
+/// it is written.
+[[noreturn]] void reject_value(const FieldInfo& field, std::string_view given, std::string_view owner = {});
+
 /// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto',
 /// 'follow', names and colours of colour maps.
 Value parse_value(const FieldInfo& field, std::string_view text);

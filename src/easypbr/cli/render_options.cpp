@@ -17,6 +17,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/named_colors.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/drawing/line_drawing.h"
 #include "easypbr/io/settings/presets.h"
@@ -203,14 +204,13 @@ void apply_background(const std::string& text, BackgroundSettings& background) {
         background.mode = BackgroundMode::image;
         background.image = text;
     } else {
-        try {
-            background.color = parse_color(text);
-            background.mode = BackgroundMode::color;
-        } catch (const ArgumentError& error) {
-            throw UsageError(
-                fmt::format("--background: expected a colour, env, blur, transparent or an image file: {}",
-                            error.what()));
-        }
+        const auto color = find_color(text);
+        if (!color)
+            throw UsageError(fmt::format(
+                "--background: expected env, blur, transparent, an image file or a colour: {}, got '{}'{}",
+                color_forms, text, did_you_mean(text, color_names())));
+        background.color = *color;
+        background.mode = BackgroundMode::color;
     }
 }
 

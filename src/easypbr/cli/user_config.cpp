@@ -35,17 +35,14 @@ struct Place {
 };
 
 /// As --set takes it.
-std::string text_of(const ConfigJson& value, const std::string& name, const Place& place) {
+std::string text_of(const ConfigJson& value, const Field& setting) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_boolean() || value.is_number()) return value.dump();
     std::vector<std::string> parts;
     if (value.is_array())
         for (const ConfigJson& part : value)
             if (part.is_number()) parts.push_back(part.dump());
-    if (!value.is_array() || parts.size() != value.size())
-        place.fail(
-            fmt::format("setting '{}': expected a text, a number, true, false or a list of numbers, got {}",
-                        name, value.dump()));
+    if (!value.is_array() || parts.size() != value.size()) reject_value(setting, value.dump());
     return fmt::format("{}", fmt::join(parts, ","));
 }
 
@@ -85,7 +82,7 @@ void apply_entry(const ConfigJson& entry, const std::vector<std::string>& files,
     Settings unused = settings;
     for (const auto& [name, value] : entry["settings"].items()) {
         try {
-            set_from_text(counts ? settings : unused, name, text_of(value, name, place));
+            set_from_text(counts ? settings : unused, name, text_of(value, field(name)));
         } catch (const ArgumentError& error) {
             place.fail(error.what());
         } catch (const NameError& error) {

@@ -14,38 +14,31 @@
 namespace easypbr {
 namespace {
 
-[[noreturn]] void reject(std::string_view text) {
-    throw ArgumentError(
-        fmt::format("colour '{}': expected '#rgb', '#rrggbb', 'r,g,b' with numbers from 0 to 1, or a "
-                    "name of CSS such as white{}",
-                    text, did_you_mean(text, color_names())));
-}
-
 Vec3 of_code(unsigned rgb) {
     return Vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f;
 }
 
-Vec3 parse_hex(std::string_view text) {
+std::optional<Vec3> parse_hex(std::string_view text) {
     const std::string_view digits = text.substr(1);
     unsigned value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-    if (error != std::errc() || end != digits.data() + digits.size()) reject(text);
+    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
     if (digits.size() == 6) return of_code(value);
     if (digits.size() == 3) return Vec3((value >> 8) & 15, (value >> 4) & 15, value & 15) / 15.0f;
-    reject(text);
+    return std::nullopt;
 }
 
-Vec3 parse_numbers(std::string_view text) {
+std::optional<Vec3> parse_numbers(std::string_view text) {
     Vec3 color;
     const char* at = text.data();
     const char* const stop = text.data() + text.size();
     for (int i = 0; i < 3; ++i) {
         const auto [end, error] = std::from_chars(at, stop, color[i]);
         const bool last = i == 2;
-        if (error != std::errc() || (last ? end != stop : end == stop || *end != ',')) reject(text);
+        if (error != std::errc() || (last ? end != stop : end == stop || *end != ',')) return std::nullopt;
         at = end + 1;
     }
-    if (!(color.minCoeff() >= 0 && color.maxCoeff() <= 1)) reject(text);
+    if (!(color.minCoeff() >= 0 && color.maxCoeff() <= 1)) return std::nullopt;
     return color;
 }
 
@@ -80,10 +73,16 @@ Rgb8 to_rgb8(const Vec3& srgb) {
     return result;
 }
 
-Vec3 parse_color(std::string_view text) {
+std::optional<Vec3> find_color(std::string_view text) {
     if (!text.empty() && text[0] == '#') return parse_hex(text);
     if (const auto code = named_color(text)) return of_code(*code);
     return parse_numbers(text);
+}
+
+Vec3 parse_color(std::string_view text) {
+    if (const auto color = find_color(text)) return *color;
+    throw ArgumentError(fmt::format("expected a colour: {}, got '{}'{}", color_forms, text,
+                                    did_you_mean(text, color_names())));
 }
 
 std::string to_hex(const Vec3& srgb) {

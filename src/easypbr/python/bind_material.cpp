@@ -40,10 +40,9 @@ void color_property(MaterialClass& material, const MaterialColor& color) {
             const Vec3 linear = to_linear_color(value, color.name);
             // The library takes what files have; 255 is a mistake.
             if (color.value == &Material::base_color && (linear.array() > 1).any())
-                throw ArgumentError(fmt::format(
-                    "material.base_color: expected a colour: '#rrggbb', a name, or 3 numbers from 0 to 1, "
-                    "got ({}, {}, {})",
-                    linear.x(), linear.y(), linear.z()));
+                throw ArgumentError(
+                    fmt::format("material.base_color: expected a colour: {}, got ({}, {}, {})", color_forms,
+                                linear.x(), linear.y(), linear.z()));
             m.change([&](Material& own) { own.*color.value = linear; });
         },
         color.doc);

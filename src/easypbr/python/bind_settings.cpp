@@ -27,8 +27,12 @@ nb::object data_to_python(const Value::Data& data, bool whole) {
 }
 
 std::vector<double> numbers_of(const FieldInfo& field, nb::handle object) {
-    const std::string what = fmt::format("setting '{}'", field.name);
-    const nb::object array = numeric_object(object, what.c_str());
+    nb::object array;
+    try {
+        array = numeric_object(object, field.name.c_str());
+    } catch (const ArgumentError&) {
+        reject_value(field, nb::cast<std::string>(nb::repr(object)));
+    }
     const nb::object flat = array.attr("astype")("float64").attr("ravel")().attr("tolist")();
     return nb::cast<std::vector<double>>(flat);
 }

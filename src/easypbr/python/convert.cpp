@@ -276,7 +276,13 @@ Eigen::Affine3d to_affine(nb::handle object, const char* what) {
 }
 
 Vec3 to_linear_color(nb::handle object, const char* what) {
-    if (nb::isinstance<nb::str>(object)) return linear_from_srgb(parse_color(nb::cast<std::string>(object)));
+    if (nb::isinstance<nb::str>(object)) {
+        try {
+            return linear_from_srgb(parse_color(nb::cast<std::string>(object)));
+        } catch (const ArgumentError& error) {
+            throw ArgumentError(fmt::format("{}: {}", what, error.what()));
+        }
+    }
     const Vec3d color = to_vector3(object, what);
     if ((color.array() < 0).any())
         throw ArgumentError(fmt::format("{}: expected numbers of at least 0, got ({}, {}, {})", what,

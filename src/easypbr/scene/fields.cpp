@@ -11,8 +11,10 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/named_colors.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/colormap.h"
+#include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/settings.h"
 #include "easypbr/scene/synonyms.h"
 
@@ -119,7 +121,7 @@ std::string describe_expected(const FieldInfo& field) {
         case FieldType::number:
             return describe_range(field) + or_auto;
         case FieldType::color:
-            return "a colour: '#rrggbb', a name, or 3 numbers from 0 to 1" + or_auto;
+            return fmt::format("a colour: {}", color_forms) + or_auto;
         case FieldType::vector:
             return describe_vector(field) + or_auto;
         case FieldType::text:
@@ -153,16 +155,23 @@ bool is_finite(const Value& value) {
     return !numbers || std::ranges::all_of(*numbers, [](double number) { return std::isfinite(number); });
 }
 
-[[noreturn]] void reject(const FieldInfo& field, const Value& value, std::string_view owner) {
-    std::string hint;
-    if (field.type == FieldType::choice)
-        if (const auto* text = std::get_if<std::string>(&value.data))
-            hint = did_you_mean(*text, field.choices);
+std::string hint_for(const FieldInfo& field, const Value& value) {
+    const auto* text = std::get_if<std::string>(&value.data);
+    if (!text) return {};
+    if (field.type == FieldType::choice) return did_you_mean(*text, field.choices);
+    return field.type == FieldType::color ? did_you_mean(*text, color_names()) : "";
+}
+
+[[noreturn]] void reject(const FieldInfo& field, std::string_view owner, std::string_view expected,
+                         std::string_view given) {
     const std::string place =
         owner.empty() ? fmt::format("setting '{}'", field.name) : fmt::format("{}{}", owner, field.name);
-    throw ArgumentError(fmt::format("{}: expected {}, got {}{}", place,
-                                    is_finite(value) ? describe_expected(field) : "finite numbers",
-                                    describe_given(value), hint));
+    throw ArgumentError(fmt::format("{}: expected {}, got {}", place, expected, given));
+}
+
+[[noreturn]] void reject(const FieldInfo& field, const Value& value, std::string_view owner) {
+    reject(field, owner, is_finite(value) ? describe_expected(field) : "finite numbers",
+           describe_given(value) + hint_for(field, value));
 }
 
 bool is_allowed(const FieldInfo& field, double number) {
@@ -252,10 +261,13 @@ bool is_valid(const Field& field, const Value& value) {
 
 namespace {
 
-/// A choice in the spelling of the table; other data as they are.
-Value::Data data_as_chosen(const FieldInfo& field, const Value::Data& data) {
+/// A choice in the spelling of the table, the text of a colour as its numbers; other data as they are.
+Value::Data data_as_put(const FieldInfo& field, const Value::Data& data) {
     const auto* text = std::get_if<std::string>(&data);
-    return text && field.type == FieldType::choice ? spelled_as_chosen(field, *text) : data;
+    if (text && field.type == FieldType::choice) return spelled_as_chosen(field, *text);
+    if (text && field.type == FieldType::color)
+        if (const auto color = find_color(*text)) return detail::to_data(*color);
+    return data;
 }
 
 }  // namespace
@@ -264,17 +276,21 @@ Value checked(const FieldInfo& field, const Value& value, std::string_view owner
     const bool has_data = value.state == Value::State::given || value.latched;
     if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value, owner);
     if (!has_data) return {{}, value.state};
-    const bool is_read = field.type == FieldType::color || field.type == FieldType::colormap;
-    if (is_read && std::holds_alternative<std::string>(value.data)) {
+    if (field.type == FieldType::colormap && std::holds_alternative<std::string>(value.data)) {
         Value parsed = parse_value(field, std::get<std::string>(value.data));
         if (parsed.state != Value::State::given) reject(field, value, owner);
         parsed.state = value.state;
         parsed.latched = value.latched;
         return parsed;
     }
-    Value::Data data = data_as_chosen(field, value.data);
+    Value::Data data = data_as_put(field, value.data);
     if (!is_allowed(field, data)) reject(field, value, owner);
     return {std::move(data), value.state, value.latched};
+}
+
+void reject_value(const FieldInfo& field, std::string_view given, std::string_view owner) {
+    constexpr size_t most_letters = 80;
+    reject(field, owner, describe_expected(field), given.substr(0, most_letters));
 }
 
 void set(Settings& settings, std::string_view name, const Value& value) {

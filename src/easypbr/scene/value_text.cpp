@@ -58,14 +58,6 @@ Value value_or_text(std::optional<T> parsed, std::string_view text) {
     return {std::string(text)};
 }
 
-Value parse_color_value(const FieldInfo& field, std::string_view text) {
-    try {
-        return {detail::to_data(parse_color(text))};
-    } catch (const ArgumentError& error) {
-        throw ArgumentError(fmt::format("setting '{}': {}", field.name, error.what()));
-    }
-}
-
 Value parse_colormap_value(const FieldInfo& field, std::string_view text) {
     try {
         return {parse_colormap(text).text()};
@@ -96,11 +88,10 @@ Value parse_value(const FieldInfo& field, std::string_view given) {
             // 800x600 is how a size is commonly written.
             return checked(field, value_or_text(parse_numbers(text, field.whole ? ",x" : ","), text));
         case FieldType::color:
-            return parse_color_value(field, text);
-        case FieldType::colormap:
-            return parse_colormap_value(field, text);
         case FieldType::choice:
             return checked(field, {std::string(text)});
+        case FieldType::colormap:
+            return parse_colormap_value(field, text);
         case FieldType::text:
             break;
     }

@@ -116,7 +116,7 @@ class SettingsParser {
     void assign(const std::string& full, const OrderedJson& json, Settings& settings) const {
         try {
             const Field& target = field(full);
-            set(settings, full, value_of(target, fmt::format("setting '{}'", full), json));
+            set(settings, full, value_of(target, json, {}));
         } catch (const NameError& error) {
             throw NameError(fmt::format("cannot read settings from {}: {}", name_, error.what()));
         } catch (const ArgumentError& error) {
@@ -124,10 +124,10 @@ class SettingsParser {
         }
     }
 
-    Value value_of(const FieldInfo& target, const std::string& place, const OrderedJson& json) const {
+    static Value value_of(const FieldInfo& target, const OrderedJson& json, std::string_view owner) {
         Value value;
         if (json.is_object() && json.size() == 1 && json.contains("auto")) {
-            value.data = data_of(place, json["auto"]);
+            value.data = data_of(target, json["auto"], owner);
             value.state = Value::State::automatic;
             value.latched = true;
         } else if (json == "auto" && target.can_be_automatic) {
@@ -135,27 +135,19 @@ class SettingsParser {
         } else if (json == "follow" && target.can_be_automatic) {
             value.state = Value::State::follow;
         } else {
-            value.data = data_of(place, json);
+            value.data = data_of(target, json, owner);
         }
         return value;
     }
 
-    Value::Data data_of(const std::string& place, const OrderedJson& json) const {
+    static Value::Data data_of(const FieldInfo& target, const OrderedJson& json, std::string_view owner) {
         if (json.is_boolean()) return json.get<bool>();
         if (json.is_number()) return json.get<double>();
         if (json.is_string()) return json.get<std::string>();
-        if (!json.is_array()) fail(fmt::format("{}: got {}", place, json.dump().substr(0, 80)));
-        return numbers_of(place, json);
-    }
-
-    std::vector<double> numbers_of(const std::string& where, const OrderedJson& json) const {
-        std::vector<double> numbers;
-        for (const OrderedJson& entry : json) {
-            if (!entry.is_number())
-                fail(fmt::format("{}: expected numbers, got {}", where, entry.dump().substr(0, 80)));
-            numbers.push_back(entry.get<double>());
-        }
-        return numbers;
+        const auto is_number = [](const OrderedJson& entry) { return entry.is_number(); };
+        if (!json.is_array() || !std::ranges::all_of(json, is_number))
+            reject_value(target, json.dump(), owner);
+        return json.get<std::vector<double>>();
     }
 
     Light light_of(const std::string& name, const OrderedJson& json) const {
@@ -168,7 +160,7 @@ class SettingsParser {
                 const auto found = std::ranges::find(light_fields(), key, &LightField::name);
                 if (found == light_fields().end())
                     throw ArgumentError(fmt::format("{}unknown key '{}'", owner, key));
-                found->put(light, checked(*found, value_of(*found, owner + key, value), owner));
+                found->put(light, checked(*found, value_of(*found, value, owner), owner));
             }
             validate(light, name);
         } catch (const ArgumentError& error) {
