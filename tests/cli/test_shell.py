@@ -1,7 +1,10 @@
 """What the shell gets from the table of options: completions, manual pages; --open; a user's configuration file."""
 import json
 import os
+import pty
 import re
+import select
+import signal
 import subprocess
 import time
 
@@ -77,16 +80,80 @@ def test_bash_answers_at_once(bash, tmp_path):
     assert int(done.stdout) < 50_000, "microseconds"
 
 
-def test_fish_completes(easypbr, tmp_path):
+@pytest.mark.parametrize("line, expected", [
+    ("render --tonemap a", ["aces", "agx"]),
+    ("comp", ["compare", "completion"]),
+    ("man comp", ["compare", "completion"]),
+    ("--device ", ["auto", "cpu", "gl"]),
+    ("--device cpu re", ["render"]),
+    ("--device cpu render --tonemap a", ["aces", "agx"]),
+    ("render --dev", ["--device"]),
+    ("render --device ", ["auto", "cpu", "gl"]),
+    ("render --layers color,dep", ["color,depth"]),
+    ("dataset --writers coco,b", ["coco,bop"]),
+    ("info render --j", ["--json"]),
+])  # fmt: skip
+def test_fish_completes(easypbr, tmp_path, line, expected):
     (tmp_path / "easypbr.fish").write_text(easypbr("completion", "fish").stdout)
-    code = "source easypbr.fish; complete -C 'easypbr render --tonemap a'; complete -C 'easypbr comp'; complete -C 'easypbr man comp'"
     home = {**os.environ, "HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path)}
+    code = f"source easypbr.fish; complete -C 'easypbr {line}'"
     done = subprocess.run(["fish", "-c", code], cwd=tmp_path, env=home, capture_output=True, text=True, check=True)
-    assert [line.split("\t")[0] for line in done.stdout.splitlines()] == ["aces", "agx", "compare", "completion", "compare", "completion"]
+    assert sorted(found.split("\t")[0] for found in done.stdout.splitlines()) == expected
+
+
+@pytest.fixture(scope="module")
+def zsh(tmp_path_factory):
+    """What zsh makes of a line when Tab is pressed at its end; Ctrl-T is a Tab that writes the line to a file."""
+    folder = tmp_path_factory.mktemp("zsh")
+    (folder / "_easypbr").write_bytes(subprocess.run([BINARY, "completion", "zsh"], capture_output=True, check=True).stdout)
+    process, terminal = pty.fork()
+    if process == 0:
+        os.chdir(folder)
+        os.execvpe("zsh", ["zsh", "-f", "-i"], {**os.environ, "TERM": "dumb"})
+    setup = ("fpath=($PWD $fpath); autoload -U compinit; compinit -u -D; setopt no_beep; LISTMAX=0; "
+             "tab() { zle expand-or-complete; print -r -- \"$BUFFER\" > part; mv part line; BUFFER= }; "
+             "zle -N tab; bindkey '^T' tab; print ready > part; mv part line\n")
+
+    def wait_for_line():
+        end = time.monotonic() + 60
+        while not (folder / "line").exists():
+            assert time.monotonic() < end
+            if select.select([terminal], [], [], 0.02)[0]:
+                os.read(terminal, 65536)  # What it shows would fill the terminal.
+        line = (folder / "line").read_text().strip()
+        (folder / "line").unlink()
+        return line
+
+    def complete(line):
+        os.write(terminal, line.encode() + b"\x14")
+        return wait_for_line()
+
+    os.write(terminal, setup.encode())
+    assert wait_for_line() == "ready"
+    yield complete
+    os.kill(process, signal.SIGKILL)
+    os.waitpid(process, 0)
+    os.close(terminal)
+
+
+@pytest.mark.parametrize("line, expected", [
+    ("rend", "render"),
+    ("--dev", "--device"),
+    ("--device c", "--device cpu"),
+    ("--device cpu rend", "--device cpu render"),
+    ("--device cpu render --tonem", "--device cpu render --tonemap"),
+    ("render --dev", "render --device"),
+    ("render --device c", "render --device cpu"),
+    ("render --tonemap ac", "render --tonemap aces"),
+    ("render --layers color,dep", "render --layers color,depth,"),
+    ("dataset --writers coco,b", "dataset --writers coco,bop,"),
+    ("completion z", "completion zsh"),
+])  # fmt: skip
+def test_zsh_completes(zsh, line, expected):
+    assert zsh(f"easypbr {line}") == f"easypbr {expected}"
 
 
 def test_zsh_takes_it(easypbr, tmp_path):
-    """_arguments parses its specifications when it completes; `zsh -n` and a run outside of a completion find the rest."""
     (tmp_path / "_easypbr").write_text(easypbr("completion", "zsh").stdout)
     subprocess.run(["zsh", "-n", "_easypbr"], cwd=tmp_path, check=True)
     code = "autoload -U compinit; compinit -u -D; source ./_easypbr; echo $_comps[easypbr]"

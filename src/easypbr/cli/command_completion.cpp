@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/command_table.h"
@@ -39,20 +40,42 @@ std::vector<std::string> command_names(const std::vector<CommandRow>& table) {
     return names;
 }
 
-/// The command's options, then those of the program that it has not itself.
-std::string option_words(const CommandRow& command, const CommandRow& program) {
+bool has_option(const CommandRow& command, const OptionRow& wanted) {
+    return std::ranges::any_of(command.options, [&](const OptionRow& option) {
+        return option.long_names == wanted.long_names && option.short_names == wanted.short_names;
+    });
+}
+
+/// What may follow a command: its options, then those of the program that it has not itself.
+std::vector<OptionRow> options_after(const CommandRow& command, const CommandRow& program) {
+    std::vector<OptionRow> options = command.options;
+    std::ranges::copy_if(program.options, std::back_inserter(options),
+                         [&](const OptionRow& option) { return !has_option(command, option); });
+    return options;
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator = " ") {
+    return fmt::format("{}", fmt::join(words, separator));
+}
+
+std::string option_words(const std::vector<OptionRow>& options) {
     std::vector<std::string> names;
-    for (const CommandRow* row : {&command, &program})
-        for (const OptionRow& option : row->options)
-            for (std::string& name : with_dashes(option))
-                if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
-    return fmt::format("{}", fmt::join(names, " "));
+    for (const OptionRow& option : options) std::ranges::copy(with_dashes(option), std::back_inserter(names));
+    return joined(names);
+}
+
+/// The program's options that take a value, which may stand before the command.
+std::vector<std::string> value_options(const CommandRow& program) {
+    std::vector<std::string> names;
+    for (const OptionRow& option : program.options)
+        if (!option.placeholder.empty()) std::ranges::copy(with_dashes(option), std::back_inserter(names));
+    return names;
 }
 
 /// The words of the first argument, where it is no file.
 std::string argument_words(const CommandRow& command) {
     if (command.arguments.empty()) return "";
-    return fmt::format("{}", fmt::join(command.arguments.front().choices, " "));
+    return joined(command.arguments.front().choices);
 }
 
 /// A pattern of a case for each of the option's names behind `before`, which is a pattern itself.
@@ -60,7 +83,7 @@ std::string bash_patterns(const OptionRow& option, const std::string& before) {
     std::vector<std::string> patterns;
     for (const std::string& name : with_dashes(option))
         patterns.push_back(fmt::format("{}' {}'", before, name));
-    return fmt::format("{}", fmt::join(patterns, " | "));
+    return joined(patterns, " | ");
 }
 
 std::string bash_values(const CommandRow& command, const std::string& before) {
@@ -71,19 +94,9 @@ std::string bash_values(const CommandRow& command, const std::string& before) {
         if (option.placeholder.empty()) continue;
         // Without words bash completes files.
         text += fmt::format("    {}) words='{}'{} ;;\n", bash_patterns(option, before),
-                            quoted(fmt::format("{}", fmt::join(option.choices, " "))),
-                            option.is_list ? " list=1" : "");
+                            quoted(joined(option.choices)), option.is_list ? " list=1" : "");
     }
     return text;
-}
-
-/// Patterns of the program's options that take a value, which may stand before the command.
-std::string bash_value_options(const CommandRow& program) {
-    std::vector<std::string> patterns;
-    for (const OptionRow& option : program.options)
-        if (!option.placeholder.empty())
-            for (const std::string& name : with_dashes(option)) patterns.push_back(name);
-    return fmt::format("{}", fmt::join(patterns, " | "));
 }
 
 std::string bash_completion(const std::vector<CommandRow>& table) {
@@ -91,7 +104,8 @@ std::string bash_completion(const std::vector<CommandRow>& table) {
     std::string values, options;
     for (size_t i = 1; i < table.size(); ++i) {
         values += bash_values(table[i], fmt::format("'{}'", table[i].name));
-        options += fmt::format("      {}) words='{}' ;;\n", table[i].name, option_words(table[i], program));
+        options += fmt::format("      {}) words='{}' ;;\n", table[i].name,
+                               option_words(options_after(table[i], program)));
     }
     // The program's own options may follow any command.
     values += bash_values(program, "*");
@@ -122,8 +136,8 @@ _easypbr() {{
 }}
 complete -o default -F _easypbr easypbr
 )",
-        bash_value_options(program), values, fmt::join(command_names(table), " "),
-        option_words(program, program), options);
+        joined(value_options(program), " | "), values, joined(command_names(table)),
+        option_words(program.options), options);
 }
 
 /// Within the brackets and colons of zsh's _arguments.
@@ -134,51 +148,78 @@ std::string zsh_text(const std::string& text) {
     return escaped;
 }
 
-std::string zsh_value(const OptionRow& option) {
-    if (option.placeholder.empty()) return "";
-    const std::string action =
-        !option.choices.empty()
-            ? fmt::format("({})", zsh_text(fmt::format("{}", fmt::join(option.choices, " "))))
-        : option.takes_file ? "_files"
-                            : " ";
-    return fmt::format(":{}:{}", zsh_text(option.placeholder), action);
+/// What completes the option's value.
+std::string zsh_action(const OptionRow& option) {
+    const std::string words = zsh_text(joined(option.choices));
+    if (option.is_list) return "_sequence compadd - " + words;
+    if (!words.empty()) return fmt::format("({})", words);
+    return option.takes_file ? "_files" : " ";
+}
+
+/// Specifications of _arguments, a line each that ends in `end`.
+std::string zsh_options(const std::vector<OptionRow>& options, std::string_view end) {
+    std::string text;
+    for (const OptionRow& option : options) {
+        const std::string value =
+            option.placeholder.empty()
+                ? ""
+                : fmt::format(":{}:{}", zsh_text(option.placeholder), zsh_action(option));
+        for (const std::string& name : with_dashes(option))
+            text += fmt::format("        '*{}[{}]{}'{}\n", name, zsh_text(option.help), value, end);
+    }
+    return text;
+}
+
+std::string zsh_arguments(const CommandRow& command) {
+    const std::string words = argument_words(command);
+    if (words.empty()) return "'*:FILE:_files'";
+    return fmt::format("'1:{}:({})'", zsh_text(command.arguments.front().long_names.front()),
+                       zsh_text(words));
 }
 
 std::string zsh_completion(const std::vector<CommandRow>& table) {
+    const CommandRow& program = table.front();
     std::string commands, cases;
     for (size_t i = 1; i < table.size(); ++i) {
         const CommandRow& command = table[i];
         commands += fmt::format("    '{}:{}'\n", command.name, zsh_text(command.help));
-        cases += fmt::format("    {})\n      _arguments \\\n", command.name);
-        for (const OptionRow& option : command.options)
-            for (const std::string& name : with_dashes(option))
-                cases +=
-                    fmt::format("        '*{}[{}]{}' \\\n", name, zsh_text(option.help), zsh_value(option));
-        const std::string words = argument_words(command);
-        cases += words.empty()
-                     ? "        '*:FILE:_files' ;;\n"
-                     : fmt::format("        '1:{}:({})' ;;\n",
-                                   zsh_text(command.arguments.front().long_names.front()), zsh_text(words));
+        cases += fmt::format("    {})\n      _arguments \\\n{}        {} ;;\n", command.name,
+                             zsh_options(options_after(command, program), " \\"), zsh_arguments(command));
     }
     return fmt::format(R"(#compdef easypbr
 # Completion of easypbr for zsh, made from its table of options: easypbr completion zsh
 _easypbr() {{
-  local -a commands
+  local -a commands program
   commands=(
 {}  )
-  if (( CURRENT == 2 )); then
+  program=(
+{}  )
+  # At i stands the command, or what is completed in its place; beyond CURRENT: an option's value is completed.
+  integer i
+  for (( i = 2; i < CURRENT; ++i )); do
+    case $words[i] in
+    {}) (( ++i )) ;;
+    -*) ;;
+    *) break ;;
+    esac
+  done
+  if (( i == CURRENT )) && [[ $words[CURRENT] != -* ]]; then
     _describe command commands
     return
+  elif (( i >= CURRENT )); then
+    _arguments $program
+    return
   fi
-  local command=$words[2]
-  shift words
-  (( CURRENT-- ))
+  local command=$words[i]
+  shift $(( i - 1 )) words
+  (( CURRENT -= i - 1 ))
   case $command in
 {}  esac
 }}
 if [ "$funcstack[1]" = _easypbr ]; then _easypbr "$@"; else compdef _easypbr easypbr; fi
 )",
-                       commands, cases);
+                       commands, zsh_options(program.options, ""), joined(value_options(program), " | "),
+                       cases);
 }
 
 /// Within single quotes of fish.
@@ -186,30 +227,64 @@ std::string fish_text(const std::string& text) {
     return replaced(replaced(text, "\\", "\\\\"), "'", "\\'");
 }
 
+/// What completes the option's value.
+std::string fish_value(const OptionRow& option) {
+    const std::string words = fish_text(joined(option.choices));
+    if (option.is_list) return fmt::format(" -x -a '(__fish_append , {})'", words);
+    if (!words.empty()) return fmt::format(" -x -a '{}'", words);
+    return option.placeholder.empty() ? "" : option.takes_file ? " -r -F" : " -x";
+}
+
+/// The options that are offered where `condition` holds.
+std::string fish_options(const std::vector<OptionRow>& options, const std::string& condition) {
+    std::string text;
+    for (const OptionRow& option : options) {
+        text += fmt::format("complete -c easypbr -n '{}'", condition);
+        for (const std::string& name : option.short_names) text += " -s " + name;
+        for (const std::string& name : option.long_names) text += " -l " + name;
+        text += fmt::format("{} -d '{}'\n", fish_value(option), fish_text(option.help));
+    }
+    return text;
+}
+
+/// Functions that tell which command is on the line; without an argument, __easypbr_is tells that none is.
+std::string fish_functions(const CommandRow& program) {
+    return fmt::format(R"(function __easypbr_command
+    set -l is_value 0
+    for word in (commandline -opc)[2..-1]
+        if test $is_value = 1
+            set is_value 0
+        else if contains -- $word {}
+            set is_value 1
+        else if not string match -q -- '-*' $word
+            echo $word
+            return
+        end
+    end
+end
+function __easypbr_is
+    set -l command (__easypbr_command)
+    test "$command" = "$argv"
+end
+)",
+                       joined(value_options(program)));
+}
+
 std::string fish_completion(const std::vector<CommandRow>& table) {
+    const CommandRow& program = table.front();
     std::string text =
-        "# Completion of easypbr for fish, made from its table of options: easypbr completion fish\n";
+        "# Completion of easypbr for fish, made from its table of options: easypbr completion fish\n" +
+        fish_functions(program);
     for (size_t i = 1; i < table.size(); ++i)
-        text += fmt::format("complete -c easypbr -n __fish_use_subcommand -f -a {} -d '{}'\n", table[i].name,
+        text += fmt::format("complete -c easypbr -n __easypbr_is -f -a {} -d '{}'\n", table[i].name,
                             fish_text(table[i].help));
-    for (const CommandRow& command : table)
-        if (const std::string words = argument_words(command); !words.empty())
-            text += fmt::format("complete -c easypbr -n '__fish_seen_subcommand_from {}' -f -a '{}'\n",
-                                command.name, fish_text(words));
-    for (size_t i = 0; i < table.size(); ++i)
-        for (const OptionRow& option : table[i].options) {
-            text += i == 0 ? "complete -c easypbr -n __fish_use_subcommand"
-                           : fmt::format("complete -c easypbr -n '__fish_seen_subcommand_from {}'",
-                                         table[i].name);
-            for (const std::string& name : option.short_names) text += " -s " + name;
-            for (const std::string& name : option.long_names) text += " -l " + name;
-            if (!option.choices.empty())
-                text +=
-                    fmt::format(" -x -a '{}'", fish_text(fmt::format("{}", fmt::join(option.choices, " "))));
-            else if (!option.placeholder.empty())
-                text += option.takes_file ? " -r -F" : " -x";
-            text += fmt::format(" -d '{}'\n", fish_text(option.help));
-        }
+    text += fish_options(program.options, "__easypbr_is");
+    for (size_t i = 1; i < table.size(); ++i) {
+        const std::string condition = "__easypbr_is " + table[i].name;
+        if (const std::string words = argument_words(table[i]); !words.empty())
+            text += fmt::format("complete -c easypbr -n '{}' -f -a '{}'\n", condition, fish_text(words));
+        text += fish_options(options_after(table[i], program), condition);
+    }
     return text;
 }
 
