@@ -1,4 +1,7 @@
 """easypbr dataset: what the command takes, says and returns."""
+import contextlib
+import os
+import pty
 import shlex
 import subprocess
 import sys
@@ -11,7 +14,7 @@ def test_command_line(tmp_path):
     done = subprocess.run([*command, "--demo", "-o", "out", "--count", "1", "--writers", "yolo", "--workers", "1"],
                           cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert "1/1" in done.stderr and "1 pictures with" in done.stdout
+    assert done.stderr == "" and "1 pictures with" in done.stdout  # Progress is for terminals.
     assert (tmp_path / "out/images/000000.png").exists() and (tmp_path / "out/contact_sheet.png").exists()
     assert subprocess.run([*command, "nothing.toml", "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 1
     assert subprocess.run([*command, "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 2
@@ -36,6 +39,33 @@ def test_command_line_errors_are_one_line(tmp_path, arguments, code, message):
     (line,) = done.stderr.splitlines()
     assert done.returncode == code and line.startswith(f"easypbr: error: {message}"), line
     assert [path.name for path in tmp_path.iterdir()] == ["wrong.toml"] and done.stdout == ""
+
+
+def said_on_a_terminal(command, folder):
+    master, terminal = pty.openpty()
+    process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=terminal)
+    os.close(terminal)
+    said = b""
+    with contextlib.suppress(OSError):  # Linux reports the end of a terminal as an error.
+        while piece := os.read(master, 4096):
+            said += piece
+    os.close(master)
+    assert process.wait(timeout=60) == 0, said
+    return said.decode()
+
+
+def test_progress_is_for_terminals(tmp_path):
+    command = [sys.executable, "-m", "easypbr", "dataset", "--demo", "--count", "1", "--writers", "yolo", "--workers", "1"]
+    assert "1/1" in said_on_a_terminal([*command, "-o", "shown"], tmp_path)
+    assert said_on_a_terminal([*command, "-o", "quiet", "--quiet"], tmp_path) == ""
+
+
+def test_a_full_standard_output_is_named(tmp_path):
+    command = [sys.executable, "-m", "easypbr", "dataset", "--demo", "-o", "out", "--count", "1", "--writers", "yolo", "--workers", "1"]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
+    expected = "easypbr: error: cannot write to standard output: No space left on device\n"
+    assert (done.returncode, done.stderr) == (1, expected)
 
 
 def test_quiet_command_line_prints_nothing(tmp_path):

@@ -158,6 +158,18 @@ def test_an_interrupted_set_ends_at_once_and_goes_on_later(command, tmp_path, wo
         assert (tmp_path / f"set/images/{record.stem}.png").exists() and (tmp_path / f"set/labels/{record.stem}.txt").exists()
 
 
+def test_a_terminated_set_ends_in_silence_with_its_workers(command, tmp_path):
+    command += ["--workers", "2", "--count", "2000"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        while len(list((tmp_path / "set").glob("records/*.json"))) < 2:
+            assert process.poll() is None
+            time.sleep(0.02)
+        process.terminate()
+        error = process.communicate(timeout=60)[1]  # The end of the pipe: no worker is left, nor multiprocessing's own process.
+    assert (process.returncode, error) == (128 + signal.SIGTERM, "")
+    assert not (tmp_path / "set/generating.lock").exists()
+
+
 @pytest.mark.parametrize("name", ["images/own.png", "labels/000000.txt", "annotations.json", "data.yaml", "records/a", "unfinished/a",
                                   "statistics.html"])
 def test_files_of_others_are_not_replaced(tmp_path, name):

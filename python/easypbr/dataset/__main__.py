@@ -1,12 +1,13 @@
 """easypbr dataset, as the command line runs it."""
 
 import argparse
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
-from ..errors import ArgumentError, Error
+from ..errors import ArgumentError, Error, FileError
 from .run import check_engine, generate
 from .spec import DatasetSpec
 
@@ -83,7 +84,17 @@ def _run(options: argparse.Namespace) -> None:
     if options.quiet:
         return
     counts = ", ".join(f"{number} {name}" for name, number in statistics["classes"].items())
-    print(f"{statistics['images']} pictures with {counts}\n{Path(options.output).resolve()}")
+    _say(f"{statistics['images']} pictures with {counts}\n{Path(options.output).resolve()}")
+
+
+def _say(text: str) -> None:
+    """Raises FileError where standard output takes no more."""
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        # What is still buffered would fail once more when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise FileError(f"cannot write to standard output: {error.strerror}") from None
 
 
 def _tell(kind: str, message: object) -> None:

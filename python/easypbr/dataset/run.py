@@ -10,6 +10,7 @@ import os
 import shutil
 import signal
 import sys
+import threading
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -161,6 +162,25 @@ def _starting_workers() -> Iterator[None]:
             os.environ["PYTHONSAFEPATH"] = before
 
 
+@contextlib.contextmanager
+def _ended_by_sigterm() -> Iterator[None]:
+    """SIGTERM ends this process by SystemExit, so that workers end and what is shared with them is given back. A handler of
+    the program's own stays."""
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield
+        return
+
+    def end(*_: object) -> None:
+        raise SystemExit(128 + signal.SIGTERM)  # as shells count it
+
+    signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
 def _make_apart(spec: DatasetSpec, folder: Path, missing: list[int], workers: int, threads: int | None,
                 progress: "_Progress") -> set[str]:
     skipped: set[str] = set()
@@ -177,10 +197,11 @@ def _make_apart(spec: DatasetSpec, folder: Path, missing: list[int], workers: in
                     futures = {pool.submit(_make_one, index): index for index in sorted(rest)}
                 processes = list((pool._processes or {}).values())
                 try:
-                    for future in concurrent.futures.as_completed(futures):
-                        skipped |= set(future.result())
-                        rest.discard(futures[future])
-                        progress.add()
+                    with _ended_by_sigterm():
+                        for future in concurrent.futures.as_completed(futures):
+                            skipped |= set(future.result())
+                            rest.discard(futures[future])
+                            progress.add()
                 except BaseException:
                     pool.shutdown(wait=False, cancel_futures=True)
                     for process in processes:
@@ -211,10 +232,11 @@ def _finish(spec: DatasetSpec, folder: Path) -> dict[str, Any]:
 
 
 class _Progress:
-    """A line on the error stream: what is done, images per second, time left."""
+    """A line on a terminal's error stream: what is done, images per second, time left."""
 
     def __init__(self, total: int, done: int, quiet: bool) -> None:
-        self.total, self.done, self.quiet = total, done, quiet
+        self.total, self.done = total, done
+        self.quiet = quiet or not sys.stderr.isatty()
         self.start, self.first, self.shown = time.monotonic(), done, 0.0
 
     def add(self, count: int = 1) -> None:
