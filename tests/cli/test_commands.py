@@ -144,9 +144,16 @@ def test_convert_encodes_images(easypbr, tmp_path):
     assert png.read(tmp_path / "a.png")[0, 0, 0] in (127, 128)
 
 
-@pytest.mark.parametrize("out", ["copy.step", "missing/copy.ply"])
-def test_convert_refuses_what_cannot_be_written(easypbr, box, tmp_path, out):
-    assert out in easypbr("convert", box, out, code=1).stderr
+def test_an_unknown_extension_of_a_picture_is_a_wrong_command(easypbr, tmp_path):
+    for out in ("x.foo", "missing/x"):
+        message = easypbr("render", "no_file.obj", "-o", out, code=2).stderr
+        assert f"cannot write {out}: unknown extension" in message and "expected one of png" in message
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("out, code", [("copy.step", 2), ("missing/copy.ply", 1)])
+def test_convert_refuses_what_cannot_be_written(easypbr, box, tmp_path, out, code):
+    assert out in easypbr("convert", box, out, code=code).stderr
     assert list(tmp_path.iterdir()) == []
 
 

@@ -133,7 +133,34 @@ def test_splats_become_other_data(easypbr, splats):
         assert info(easypbr, "out.ply")["attributes"] == attributes
     easypbr("convert", splats, "out.ply", "--prune-opacity", "0.5", "--to-mesh", "64")
     assert info(easypbr, "out.ply")["faces"] > 100
-    assert "from 8 to 512" in easypbr("convert", splats, "out.ply", "--to-mesh", "7", code=1).stderr
+    assert "from 8 to 512" in easypbr("convert", splats, "out.ply", "--to-mesh", "7", code=2).stderr
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ("in.obj out.stl", "out.stl: files with extension 'stl' cannot be written; expected one of ply, obj"),
+    ("in.obj -", "OUT names a file, not standard output: expected one with extension ply, obj"),
+    ("in.png -", "OUT names a file, not standard output: expected one with extension png"),
+    ("in.png out.foo", "cannot write out.foo: unknown extension 'foo'"),
+    ("in.obj out.ply --normalize-size 0", "--normalize-size: expected a number > 0, got 0"),
+    ("in.obj out.ply --scale nan", "--scale: expected a finite number other than 0, got nan"),
+    ("in.obj out.ply --upsample -1", "--upsample: expected a whole number from 0 to 12, got -1"),
+    ("in.obj out.ply --subsample 0", "--subsample: expected a whole number >= 1, got 0"),
+    ("in.obj out.ply --sample-surface 0", "--sample-surface: expected a whole number from 1 to 2147483647, got 0"),
+    ("in.obj out.ply --weld -1", "--weld: expected a number >= 0, got -1"),
+    ("in.obj out.ply --prune-size nan", "--prune-size: expected a number, got nan"),
+    ("in.obj out.ply --crop-box 1,1,1,0,0,0", "--crop-box: expected a box whose lowest corner is below its highest, got 1,1,1,0,0,0"),
+    ("in.obj out.ply --cut-sphere 0,0,0,0", "--cut-sphere: expected a finite centre and a radius > 0, got 0,0,0,0"),
+    ("in.obj out.ply --center --smooth -1", "--smooth: expected a whole number from 0 to 100000, got -1"),
+])  # fmt: skip
+def test_what_the_options_show_is_told_before_anything_is_read(easypbr, tmp_path, arguments, message):
+    """There is no file in.obj or in.png."""
+    assert message in easypbr("convert", *arguments.split(), code=2).stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_help_names_every_format_that_is_written(easypbr):
+    shown = " ".join(easypbr("convert", "--help").stdout.split())
+    assert "Mesh file (ply, obj, glb, pcd, xyz, txt, asc, csv, npy, npz, spz) or image file (png, " in shown
 
 
 def test_steps_are_for_meshes(easypbr, sphere, render, tmp_path):

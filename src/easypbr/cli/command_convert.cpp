@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "easypbr/app/output.h"
 #include "easypbr/app/scene_files.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
@@ -21,7 +25,10 @@ struct ConvertOptions {
 void declare_convert(CLI::App& command, ConvertOptions& options) {
     command.add_option("IN", options.in, "Mesh or image file; - is a mesh from standard input");
     declare_format(command, options.format);
-    command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
+    command.add_option(
+        "OUT", options.out,
+        fmt::format("Mesh file ({}) or image file ({})", fmt::join(io::writable_extensions(), ", "),
+                    fmt::join(io::writable_image_extensions(), ", ")));
     command
         .add_option(
             "--crease", options.crease,
@@ -49,10 +56,33 @@ Settings settings_of(const ConvertOptions& options) {
     return settings;
 }
 
+/// Throws UsageError or ArgumentError for what the names of IN and OUT alone show.
+void check_out(const ConvertOptions& options) {
+    const bool is_image = is_image_file(options.in);
+    if (options.out == "-")
+        throw UsageError(fmt::format(
+            "convert: OUT names a file, not standard output: expected one with extension {}",
+            fmt::join(is_image ? io::writable_image_extensions() : io::writable_extensions(), ", ")));
+    if (!is_image) {
+        try {
+            io::check_mesh_extension(options.out);
+        } catch (const FormatError& error) {
+            throw UsageError(error.what());
+        }
+        return;
+    }
+    if (!options.steps.empty())
+        throw UsageError("convert: " + options.steps.front().option + " is for meshes, and " + options.in +
+                         " is an image");
+    app::encoding_for(options.out);
+}
+
 void check_convert(const ConvertOptions& options) {
     require(!options.out.empty(), "convert", "IN and OUT");
     check_input("convert", {options.in});
     settings_of(options);
+    check_out(options);
+    check_mesh_steps(options.steps);
 }
 
 int run_convert(const ConvertOptions& options) {
@@ -67,9 +97,6 @@ int run_convert(const ConvertOptions& options) {
         io::save_mesh(changed, options.out);
         return 0;
     }
-    if (!options.steps.empty())
-        throw UsageError("convert: " + options.steps.front().option + " is for meshes, and " + options.in +
-                         " is an image");
     io::save_image(io::load_image(options.in), options.out);
     return 0;
 }

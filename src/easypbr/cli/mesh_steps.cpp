@@ -1,20 +1,58 @@
 #include "easypbr/cli/mesh_steps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
+#include "easypbr/geometry/require.h"
 #include "easypbr/geometry/sample.h"
 #include "easypbr/geometry/surfels.h"
 
 namespace easypbr::cli {
 namespace {
+
+/// Throws ArgumentError for a number that no mesh makes right.
+template <class Number>
+using Check = void (*)(const char* option, Number value);
+
+void positive(const char* option, double value) {
+    geometry::require_positive(option, value);
+}
+
+void not_negative(const char* option, double value) {
+    if (!(value >= 0) || !std::isfinite(value))
+        throw ArgumentError(fmt::format("{}: expected a number >= 0, got {}", option, value));
+}
+
+void a_number(const char* option, double value) {
+    if (std::isnan(value)) throw ArgumentError(fmt::format("{}: expected a number, got nan", option));
+}
+
+void a_factor(const char* option, double value) {
+    if (!std::isfinite(value) || value == 0)
+        throw ArgumentError(fmt::format("{}: expected a finite number other than 0, got {}", option, value));
+}
+
+template <class Number, Number least>
+void at_least(const char* option, Number value) {
+    if (value < least)
+        throw ArgumentError(fmt::format("{}: expected a whole number >= {}, got {}", option, least, value));
+}
+
+template <class Number, int64_t least, int64_t most>
+void between(const char* option, Number value) {
+    geometry::require_between(option, value, least, most);
+}
 
 /// Adds options that append steps.
 class StepOptions {
@@ -23,13 +61,14 @@ class StepOptions {
 
     /// An option with a number.
     template <class Number>
-    void number(const char* name, const char* unit, const char* doc, Mesh (*apply)(const Mesh&, Number)) {
+    void number(const char* name, const char* unit, const char* doc, Check<Number> check,
+                Mesh (*apply)(const Mesh&, Number)) {
         command_
             .add_option_function<Number>(
                 name,
-                [this_steps = &steps_, name, apply](Number value) {
-                    this_steps->push_back(
-                        {name, [apply, value](const Mesh& mesh) { return apply(mesh, value); }});
+                [this_steps = &steps_, name, check, apply](Number value) {
+                    this_steps->push_back({name, [check, name, value] { check(name, value); },
+                                           [apply, value](const Mesh& mesh) { return apply(mesh, value); }});
                 },
                 doc)
             ->option_text(unit)
@@ -39,15 +78,17 @@ class StepOptions {
     /// An option with so many numbers, separated by commas or blanks.
     template <size_t count>
     void numbers(const char* name, const char* unit, const char* doc,
+                 Check<const std::array<double, count>&> check,
                  Mesh (*apply)(const Mesh&, const std::array<double, count>&)) {
         command_
             .add_option_function<std::vector<double>>(
                 name,
-                [this_steps = &steps_, name, apply](const std::vector<double>& given) {
+                [this_steps = &steps_, name, check, apply](const std::vector<double>& given) {
                     std::array<double, count> values;
                     std::ranges::copy(given, values.begin());
                     this_steps->push_back(
-                        {name, [apply, values](const Mesh& mesh) { return apply(mesh, values); }});
+                        {name, [check, name, values] { check(name, values); },
+                         [apply, values](const Mesh& mesh) { return apply(mesh, values); }});
                 },
                 doc)
             ->option_text(unit)
@@ -61,7 +102,7 @@ class StepOptions {
             .add_flag_callback(
                 name,
                 [this_steps = &steps_, name, apply] {
-                    this_steps->push_back({name, apply});
+                    this_steps->push_back({name, [] {}, apply});
                 },
                 doc)
             ->trigger_on_parse();
@@ -83,17 +124,18 @@ Mesh clean(const Mesh& mesh) {
 void declare_places(StepOptions& steps) {
     steps.flag("--merge", "Merge all parts of the file into one mesh (implied by the other steps)", merge);
     steps.flag("--center", "Move the centre of the bounding box to the origin", centered);
-    steps.number<double>("--scale", "X", "Scale about the origin", [](const Mesh& mesh, double factor) {
-        return transformed(mesh, Eigen::Affine3d(Eigen::Scaling(factor)));
-    });
+    steps.number<double>("--scale", "X", "Scale about the origin", a_factor,
+                         [](const Mesh& mesh, double factor) {
+                             return transformed(mesh, Eigen::Affine3d(Eigen::Scaling(factor)));
+                         });
     steps.number<double>("--normalize-size", "X", "Scale until the longest side of the bounding box is X",
-                         with_size);
+                         positive, with_size);
 }
 
 void declare_repairs(StepOptions& steps) {
     steps.number<double>(
         "--weld", "DISTANCE",
-        "Merge vertices within this distance that have the same attributes; 0: equal positions",
+        "Merge vertices within this distance that have the same attributes; 0: equal positions", not_negative,
         [](const Mesh& mesh, double tolerance) {
             return remove_duplicate_vertices(mesh, {tolerance, true});
         });
@@ -103,35 +145,39 @@ void declare_repairs(StepOptions& steps) {
 }
 
 void declare_resolutions(StepOptions& steps) {
-    steps.number<int64_t>("--subsample", "N", "Keep N random vertices",
+    steps.number<int64_t>("--subsample", "N", "Keep N random vertices", at_least<int64_t, 1>,
                           [](const Mesh& mesh, int64_t count) { return subsample_random(mesh, count); });
     steps.number<double>("--subsample-cells", "EDGE",
-                         "Keep the mean vertex of each cell of a grid of this edge length", subsample_voxels);
+                         "Keep the mean vertex of each cell of a grid of this edge length", positive,
+                         subsample_voxels);
     steps.number<double>("--voxelize", "EDGE",
-                         "Keep the centre of each occupied cell of a grid of this edge length", voxelize);
-    steps.number<int>("--decimate", "N", "Simplify to at most N faces", [](const Mesh& mesh, int faces) {
-        return decimate(mesh, {faces, {}});
-    });
-    steps.number<double>("--decimate-error", "X", "Simplify up to a surface error of at most X",
+                         "Keep the centre of each occupied cell of a grid of this edge length", positive,
+                         voxelize);
+    steps.number<int>("--decimate", "N", "Simplify to at most N faces", at_least<int, 0>,
+                      [](const Mesh& mesh, int faces) {
+                          return decimate(mesh, {faces, {}});
+                      });
+    steps.number<double>("--decimate-error", "X", "Simplify up to a surface error of at most X", not_negative,
                          [](const Mesh& mesh, double error) {
                              return decimate(mesh, {{}, error});
                          });
-    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times",
+    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times", between<int, 0, 12>,
                       [](const Mesh& mesh, int iterations) { return upsample(mesh, iterations); });
-    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing",
+    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing", between<int, 0, 100000>,
                       [](const Mesh& mesh, int iterations) { return smooth(mesh, iterations); });
 }
 
 void declare_points(StepOptions& steps) {
     steps.number<int64_t>("--sample-surface", "N", "Sample N points on the surface, uniform by area",
+                          between<int64_t, 1, std::numeric_limits<int32_t>::max()>,
                           [](const Mesh& mesh, int64_t count) { return sample_surface(mesh, count); });
     steps.number<int>("--estimate-normals", "K",
-                      "Estimate normals from the K nearest neighbours of each vertex",
+                      "Estimate normals from the K nearest neighbours of each vertex", between<int, 3, 256>,
                       [](const Mesh& mesh, int k) {
                           return estimate_normals(mesh, {k, {}});
                       });
     steps.number<int>("--estimate-surfels", "K",
-                      "Estimate surfels from the K nearest neighbours of each vertex",
+                      "Estimate surfels from the K nearest neighbours of each vertex", between<int, 3, 256>,
                       [](const Mesh& mesh, int k) {
                           return estimate_surfels(mesh, {k, {}});
                       });
@@ -148,29 +194,46 @@ Mesh cut_by_sphere(const Mesh& mesh, const std::array<double, 4>& v) {
     return crop_sphere(mesh, Vec3d(v[0], v[1], v[2]), v[3], keep);
 }
 
+void check_box(const char* option, const std::array<double, 6>& v) {
+    for (size_t i = 0; i < 3; ++i)
+        if (!(v[i] <= v[i + 3]))
+            throw ArgumentError(
+                fmt::format("{}: expected a box whose lowest corner is below its highest, got {}", option,
+                            fmt::join(v, ",")));
+}
+
+void check_sphere(const char* option, const std::array<double, 4>& v) {
+    if (!std::all_of(v.begin(), v.end(), [](double number) { return std::isfinite(number); }) || v[3] <= 0)
+        throw ArgumentError(
+            fmt::format("{}: expected a finite centre and a radius > 0, got {}", option, fmt::join(v, ",")));
+}
+
 void declare_cuts(StepOptions& steps) {
     constexpr const char *box = "X,Y,Z,X,Y,Z", *sphere = "X,Y,Z,RADIUS";
-    steps.numbers<6>("--crop-box", box, "Keep what lies between two corners, the lowest first",
+    steps.numbers<6>("--crop-box", box, "Keep what lies between two corners, the lowest first", check_box,
                      cut_by_box<Keep::inside>);
-    steps.numbers<6>("--cut-box", box, "Remove what lies between two corners, the lowest first",
+    steps.numbers<6>("--cut-box", box, "Remove what lies between two corners, the lowest first", check_box,
                      cut_by_box<Keep::outside>);
-    steps.numbers<4>("--crop-sphere", sphere, "Keep what lies within a sphere", cut_by_sphere<Keep::inside>);
-    steps.numbers<4>("--cut-sphere", sphere, "Remove what lies within a sphere",
+    steps.numbers<4>("--crop-sphere", sphere, "Keep what lies within a sphere", check_sphere,
+                     cut_by_sphere<Keep::inside>);
+    steps.numbers<4>("--cut-sphere", sphere, "Remove what lies within a sphere", check_sphere,
                      cut_by_sphere<Keep::outside>);
 }
 
 void declare_splats(StepOptions& steps) {
     steps.number<double>(
-        "--prune-opacity", "X", "Remove splats of an opacity below X",
+        "--prune-opacity", "X", "Remove splats of an opacity below X", a_number,
         [](const Mesh& mesh, double opacity) { return prune_splats(mesh, {.least_opacity = opacity}); });
     steps.number<double>(
-        "--prune-size", "X", "Remove splats of a standard deviation above X",
+        "--prune-size", "X", "Remove splats of a standard deviation above X", a_number,
         [](const Mesh& mesh, double size) { return prune_splats(mesh, {.most_size = size}); });
     steps.number<int64_t>("--decimate-splats", "N", "Merge neighbouring splats until N are left",
+                          at_least<int64_t, 1>,
                           [](const Mesh& mesh, int64_t count) { return decimate_splats(mesh, count); });
     steps.flag("--to-cloud", "Make a cloud of the means of splats", cloud_from_splats);
     steps.number<int>(
         "--to-mesh", "N", "Make a mesh of the surface of splats, N cells along the longest side",
+        between<int, 8, 512>,
         [](const Mesh& mesh, int resolution) { return mesh_from_splats(mesh, {.resolution = resolution}); });
 }
 
@@ -194,6 +257,10 @@ void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps) {
     declare_points(options);
     declare_cuts(options);
     declare_splats(options);
+}
+
+void check_mesh_steps(const std::vector<MeshStep>& steps) {
+    for (const MeshStep& step : steps) step.check();
 }
 
 Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps, Phases& phases) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/app/output.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
@@ -81,6 +82,8 @@ void check_usage(const RenderOptions& options) {
         throw UsageError("render: --camera-axes needs --camera-pose");
     if (!options.camera.empty() && !options.camera_pose.empty())
         throw UsageError("render: --camera and --camera-pose exclude each other");
+    const bool is_picture = !options.records() && !options.is_page() && !options.is_line_drawing();
+    if (is_picture && !options.output.empty() && options.output != "-") app::encoding_for(options.output);
     if (options.bit_depth == 16 && options.output != "-" && extension_of(options.output) != "png")
         throw UsageError("render: --bit-depth 16 needs a PNG file as output");
     if (options.output == "-" && (options.batch || !options.layers.empty()))

@@ -59,6 +59,12 @@ Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {
 /// FormatError for an unknown extension. Never leaves half a file.
 void save_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
+/// Throws FormatError where save_mesh() does for the extension alone.
+void check_mesh_extension(const std::filesystem::path& path);
+
+/// Extensions that save_mesh() writes.
+const std::vector<std::string>& writable_extensions();
+
 /// Extensions that load_scene() reads without assimp's reader, and all.
 std::vector<std::string> native_extensions();
 std::vector<std::string> readable_extensions();

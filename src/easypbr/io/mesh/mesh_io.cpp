@@ -27,8 +27,6 @@
 namespace easypbr::io {
 namespace {
 
-const std::vector<std::string> writable_extensions{"ply", "obj", "glb", "pcd", "xyz", "txt",
-                                                   "asc", "csv", "npy", "npz", "spz"};
 const std::vector<std::string> splat_extensions{"ply", "glb", "spz"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -302,10 +300,20 @@ Mesh load_mesh(const fs::path& path, const LoadOptions& options) {
     return load_scene(path, options).mesh;
 }
 
+const std::vector<std::string>& writable_extensions() {
+    static const std::vector<std::string> all{"ply", "obj", "glb", "pcd", "xyz", "txt",
+                                              "asc", "csv", "npy", "npz", "spz"};
+    return all;
+}
+
+void check_mesh_extension(const fs::path& path) {
+    if (!contains(writable_extensions(), extension_of(path)))
+        fail_extension(path, extension_of(path), "written", writable_extensions());
+}
+
 void save_mesh(const Mesh& mesh, const fs::path& path) {
     const std::string extension = extension_of(path);
-    if (!contains(writable_extensions, extension))
-        fail_extension(path, extension, "written", writable_extensions);
+    check_mesh_extension(path);
     check_writable(path);
     if (!contains(splat_extensions, extension)) warn_of_splats(mesh, path);
     if (extension == "glb") {
