@@ -28,6 +28,12 @@ def test_pictures_are_png_whatever_the_name(easypbr, sphere, tmp_path):
     assert png.read(tmp_path / "ball.tmp").shape == (256, 256, 4)
 
 
+def test_a_dash_is_standard_output(easypbr, sphere, tmp_path):
+    easypbr("thumbnail", sphere, "-o", "ball.png", "--size", "32")
+    assert easypbr("thumbnail", sphere, "-o", "-", "--size", "32", text=False).stdout == (tmp_path / "ball.png").read_bytes()
+    assert not (tmp_path / "-").exists()
+
+
 def test_users_defaults_count(easypbr, environment, sphere, tmp_path, monkeypatch):
     monkeypatch.setitem(environment, "XDG_CONFIG_HOME", str(tmp_path))
     (tmp_path / "easypbr").mkdir()

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <future>
 #include <iterator>
+#include <span>
 
 #include "easypbr/app/output.h"
 #include "easypbr/app/recorder.h"
@@ -21,6 +21,7 @@
 #include "easypbr/cli/open_file.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/stage_times.h"
+#include "easypbr/cli/standard_output.h"
 #include "easypbr/cli/terminal_image.h"
 #include "easypbr/cli/truth_layers.h"
 #include "easypbr/cli/user_config.h"
@@ -149,12 +150,6 @@ std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, con
     std::vector<io::LoadedScene> loaded;
     for (const std::string& file : files) loaded.push_back(load_drawable(file, options));
     return loaded;
-}
-
-template <class Bytes>
-void write_to_stdout(const Bytes& bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
-        throw FileError("cannot write the picture to standard output");
 }
 
 class RenderJob {
@@ -348,12 +343,14 @@ class RenderJob {
     }
 
     void write(const Picture& picture, const Image& image) {
-        if (picture.output.empty())
-            write_to_stdout(terminal_text(image, terminal_.protocol));
-        else if (picture.output == "-")
+        if (picture.output.empty()) {
+            const std::string text = terminal_text(image, terminal_.protocol);
+            write_to_stdout(std::as_bytes(std::span(text)));
+        } else if (picture.output == standard_output) {
             write_to_stdout(io::encode_png(image));
-        else
+        } else {
             io::save_image(image, picture.output);
+        }
         write_layers(picture);
         save_settings(picture);
     }
@@ -387,8 +384,7 @@ class RenderJob {
 int run_render(const RenderOptions& options) {
     if (options.quiet) be_quiet();
     if (options.open && options.output == "-") throw UsageError("render: --open needs a file: -o FILE");
-    if (options.output == "-" && ::isatty(STDOUT_FILENO))
-        throw UsageError("render: standard output is a terminal; redirect it or name a file");
+    if (options.output == standard_output) check_standard_output("render");
     Terminal terminal;
     if (options.output.empty()) {
         terminal = terminal_of_stdout();

@@ -6,6 +6,7 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
 #include "easypbr/cli/drawable.h"
+#include "easypbr/cli/standard_output.h"
 #include "easypbr/cli/user_config.h"
 #include "easypbr/cli/written_paths.h"
 #include "easypbr/core/file.h"
@@ -27,7 +28,9 @@ struct ThumbnailOptions {
 
 void declare_thumbnail(CLI::App& command, ThumbnailOptions& options) {
     command.add_option("file", options.file, "Mesh file to read; - is standard input")->option_text("FILE");
-    command.add_option("-o,--output", options.output, "PNG file to write, whatever its extension")
+    command
+        .add_option("-o,--output", options.output,
+                    "PNG file to write, whatever its extension; '-': standard output")
         ->option_text("FILE");
     command.add_option("--size", options.size, "Width and height in pixels, 1 to 4096")
         ->option_text("N")
@@ -42,10 +45,12 @@ int run_thumbnail(const ThumbnailOptions& options) {
         throw UsageError(
             fmt::format("thumbnail: --size: expected 1 to {}, got {}", largest_size, options.size));
     check_input("thumbnail", {options.file});
-    if (options.file != standard_input)
+    const bool is_file = options.output != standard_output;
+    if (!is_file) check_standard_output("thumbnail");
+    if (is_file && options.file != standard_input)
         check_paths("thumbnail", {{"-o", options.output}}, {{"FILE", options.file}});
     be_quiet();
-    check_writable(options.output);
+    if (is_file) check_writable(options.output);
     app::Session session;
     Settings& settings = session.settings();
     settings.background.mode = BackgroundMode::transparent;
@@ -56,7 +61,8 @@ int run_thumbnail(const ThumbnailOptions& options) {
          unique_names({options.file}).front());
     const Vec2i size(options.size, options.size);
     const Image image = session.render({size, std::nullopt, app::encoding_for("-.png")});
-    write_file(options.output, io::encode_png(image));
+    const std::vector<std::byte> png = io::encode_png(image);
+    is_file ? write_file(options.output, png) : write_to_stdout(png);
     return 0;
 }
 
