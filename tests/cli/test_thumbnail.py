@@ -30,7 +30,8 @@ def test_pictures_are_png_whatever_the_name(easypbr, sphere, tmp_path):
 
 def test_a_dash_is_standard_output(easypbr, sphere, tmp_path):
     easypbr("thumbnail", sphere, "-o", "ball.png", "--size", "32")
-    assert easypbr("thumbnail", sphere, "-o", "-", "--size", "32", text=False).stdout == (tmp_path / "ball.png").read_bytes()
+    written = easypbr("thumbnail", sphere, "-o", "-", "--size", "32", text=False).stdout
+    assert written == (tmp_path / "ball.png").read_bytes()
     assert not (tmp_path / "-").exists()
 
 

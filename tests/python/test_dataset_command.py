@@ -61,7 +61,8 @@ def test_progress_is_for_terminals(tmp_path):
 
 
 def test_a_full_standard_output_is_named(tmp_path):
-    command = [sys.executable, "-m", "easypbr", "dataset", "--demo", "-o", "out", "--count", "1", "--writers", "yolo", "--workers", "1"]
+    options = "--demo -o out --count 1 --writers yolo --workers 1"
+    command = [sys.executable, "-m", "easypbr", "dataset", *options.split()]
     with open("/dev/full", "w") as full:
         done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
     expected = "easypbr: error: cannot write to standard output: No space left on device\n"

@@ -165,7 +165,7 @@ def test_a_terminated_set_ends_in_silence_with_its_workers(command, tmp_path):
             assert process.poll() is None
             time.sleep(0.02)
         process.terminate()
-        error = process.communicate(timeout=60)[1]  # The end of the pipe: no worker is left, nor multiprocessing's own process.
+        error = process.communicate(timeout=60)[1]  # To the pipe's end: no process that was started is left.
     assert (process.returncode, error) == (128 + signal.SIGTERM, "")
     assert not (tmp_path / "set/generating.lock").exists()
 
