@@ -75,7 +75,7 @@ class BloomTest : public ::testing::TestWithParam<bool> {
         GetParam() ? bloom.shade(inputs, lit, transfers) : bloom.draw(inputs, lit);
         render::OutputPass output(transfers);
         output.begin(size, render::Encoding::scene_linear);
-        output.finish(frame, lit, nullptr, nullptr);
+        output.finish(frame, lit, nullptr, targets, nullptr);
         const std::vector<float> pixels = output.picture().read<float>(transfers);
         LightField result(size.x(), size.y());
         for (size_t i = 0; i < result.values.size(); ++i) result.values[i] = pixels[4 * i + 1];
