@@ -50,7 +50,7 @@ void at_least(const char* option, Number value) {
 }
 
 template <class Number, int64_t least, int64_t most>
-void between(const char* option, Number value) {
+void check_range(const char* option, Number value) {
     geometry::require_between(option, value, least, most);
 }
 
@@ -161,24 +161,24 @@ void declare_resolutions(StepOptions& steps) {
                          [](const Mesh& mesh, double error) {
                              return decimate(mesh, {{}, error});
                          });
-    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times", between<int, 0, 12>,
+    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times", check_range<int, 0, 12>,
                       [](const Mesh& mesh, int iterations) { return upsample(mesh, iterations); });
-    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing", between<int, 0, 100000>,
+    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing", check_range<int, 0, 100000>,
                       [](const Mesh& mesh, int iterations) { return smooth(mesh, iterations); });
 }
 
 void declare_points(StepOptions& steps) {
     steps.number<int64_t>("--sample-surface", "N", "Sample N points on the surface, uniform by area",
-                          between<int64_t, 1, std::numeric_limits<int32_t>::max()>,
+                          check_range<int64_t, 1, std::numeric_limits<int32_t>::max()>,
                           [](const Mesh& mesh, int64_t count) { return sample_surface(mesh, count); });
     steps.number<int>("--estimate-normals", "K",
-                      "Estimate normals from the K nearest neighbours of each vertex", between<int, 3, 256>,
-                      [](const Mesh& mesh, int k) {
+                      "Estimate normals from the K nearest neighbours of each vertex",
+                      check_range<int, 3, 256>, [](const Mesh& mesh, int k) {
                           return estimate_normals(mesh, {k, {}});
                       });
     steps.number<int>("--estimate-surfels", "K",
-                      "Estimate surfels from the K nearest neighbours of each vertex", between<int, 3, 256>,
-                      [](const Mesh& mesh, int k) {
+                      "Estimate surfels from the K nearest neighbours of each vertex",
+                      check_range<int, 3, 256>, [](const Mesh& mesh, int k) {
                           return estimate_surfels(mesh, {k, {}});
                       });
     steps.flag("--to-surfels", "Make one surfel per vertex of a mesh, or per splat", surfels_from_mesh);
@@ -233,7 +233,7 @@ void declare_splats(StepOptions& steps) {
     steps.flag("--to-cloud", "Make a cloud of the means of splats", cloud_from_splats);
     steps.number<int>(
         "--to-mesh", "N", "Make a mesh of the surface of splats, N cells along the longest side",
-        between<int, 8, 512>,
+        check_range<int, 8, 512>,
         [](const Mesh& mesh, int resolution) { return mesh_from_splats(mesh, {.resolution = resolution}); });
 }
 
