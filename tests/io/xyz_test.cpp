@@ -206,4 +206,11 @@ TEST(Xyz, HoldsForOnePointAndForManyChunks) {
     }
 }
 
+TEST(Xyz, WarnsWhereFloatsDoNotTellNumbersApart) {
+    const auto warnings = warnings_of("x,y,z,id,heat\n0,0,0,123456789,0.123456789\n1,0,0,123456791,0.2\n");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("'id'"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("123456789 and 123456791"), std::string::npos) << warnings[0];
+}
+
 }  // namespace easypbr::xyz_test

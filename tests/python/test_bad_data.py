@@ -224,3 +224,16 @@ def test_dlpack_that_numpy_does_not_take_is_an_argument_error(square, error):
     with pytest.raises(easypbr.ArgumentError, match="on a GPU") as raised:
         easypbr.as_mesh(OfDlpack())
     assert raised.value.__cause__ is error
+
+
+def test_scalars_that_float32_does_not_tell_apart_are_a_warning(caplog):
+    cloud = Mesh()
+    cloud.V = np.random.default_rng(1).random((1000, 3))
+    cloud.add_scalar("heat", np.linspace(0, 1, 1000))
+    cloud.add_scalar("small", np.arange(1000) + 2**24 - 1000)
+    assert not caplog.text
+    cloud.add_scalar("stamp", 1.7e9 + np.linspace(0, 60, 1000))
+    assert caplog.text.count("'stamp'") == 1 and "subtract an offset" in caplog.text
+    caplog.clear()
+    cloud.scalars["id"] = np.full(1000, 5, np.int64) + np.arange(1000) * 2**40 + 1
+    assert caplog.text.count("'id'") == 1

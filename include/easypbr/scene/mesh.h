@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "easypbr/core/math.h"
@@ -95,6 +96,13 @@ class Mesh {
     Array1f scalar(const std::string& name) const;
     /// Adds scalars, or replaces those of the same name.
     void add_scalar(const std::string& name, Array1f values);
+    /// The same from any Eigen expression of doubles, which become floats: a warning says where that takes
+    /// what tells them apart, as time stamps and IDs.
+    template <class Derived>
+    requires std::is_same_v<typename Derived::Scalar, double>
+    void add_scalar(const std::string& name, const Eigen::DenseBase<Derived>& values) {
+        add_doubles(name, Array1d(values));
+    }
     /// As add_scalar(), all of them or none.
     void add_scalars(const std::vector<ScalarArray>& scalars);
     /// Throws NameError with the nearest name.
@@ -158,6 +166,7 @@ class Mesh {
 
   private:
     struct Shared;
+    void add_doubles(const std::string& name, const Array1d& values);
     explicit Mesh(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 
     /// Puts `next` in place if the data are still the `expected` ones. Throws ArgumentError when a child of

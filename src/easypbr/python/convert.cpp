@@ -323,6 +323,21 @@ typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape
     return result;
 }
 
+RoundingCounts rounding_of(nb::handle object, const ArrayShape& shape) {
+    Rounding rounding;
+    visit_rows(object, shape, [&](const auto* data, const Layout& layout) {
+        using Element = std::remove_cvref_t<decltype(*data)>;
+        if constexpr (sizeof(Element) >= 4 && !std::is_same_v<Element, float>)
+            parallel_chunks(size_t(layout.rows), copy_grain, [&](size_t begin, size_t end) {
+                RoundingCounts piece;
+                for (size_t row = begin; row < end; ++row)
+                    piece.add(double(data[int64_t(row) * layout.row_stride]));
+                rounding.add(piece);
+            });
+    });
+    return rounding.counts();
+}
+
 ArrayXf to_colors(nb::handle object, const ArrayShape& shape) {
     ArrayXf::Dense C;
     visit_rows(object, shape, [&](const auto* data, const Layout& layout) {

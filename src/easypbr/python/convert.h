@@ -13,6 +13,7 @@
 #include "easypbr/python/bindings.h"
 #include "easypbr/scene/array.h"
 #include "easypbr/scene/offset.h"
+#include "easypbr/scene/rounding.h"
 
 namespace easypbr::python {
 
@@ -75,6 +76,9 @@ struct ArrayShape {
 /// ArgumentError that names the array, the expected and the given shape.
 template <class Scalar, int Cols>
 typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape);
+
+/// What float32 makes of the object's numbers, a column of them. Throws as to_array().
+RoundingCounts rounding_of(nb::handle object, const ArrayShape& shape);
 
 /// Colours as 0 to 1. uint8 and uint16 span the range of their type; of others the values tell whether they
 /// are 0 to 1 or 0 to 255 (scene/color_range.h). Throws ArgumentError for numbers of neither range.

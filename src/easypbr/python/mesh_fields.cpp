@@ -46,7 +46,10 @@ void refuse_scores(nb::handle object) {
 Array1f scalar_values(const std::string& name, nb::handle values) {
     const std::string array = fmt::format("scalars['{}']", name);
     const nb::object numbers = flags_as_numbers(values, fmt::format("mesh array {}", array).c_str());
-    return to_array<float, 1>(numbers, {array.c_str(), 1, 1});
+    const ArrayShape shape{array.c_str(), 1, 1};
+    const Array1f kept = to_array<float, 1>(numbers, shape);
+    warn_of_rounding("", name, rounding_of(numbers, shape));
+    return kept;
 }
 
 std::vector<ScalarArray> scalar_arrays(nb::handle items) {

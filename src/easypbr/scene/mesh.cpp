@@ -9,6 +9,7 @@
 #include "easypbr/scene/mesh_shared.h"
 #include "easypbr/scene/offset.h"
 #include "easypbr/scene/polygon_values.h"
+#include "easypbr/scene/rounding.h"
 
 namespace easypbr {
 namespace {
@@ -98,6 +99,11 @@ void Mesh::set_material(const Material& material, int index) {
 
 void Mesh::add_scalar(const std::string& name, Array1f values) {
     add_scalars({ScalarArray{name, values}});
+}
+
+void Mesh::add_doubles(const std::string& name, const Array1d& values) {
+    add_scalar(name, Array1f(values));
+    warn_of_rounding("", name, rounding_of({values.data(), size_t(values.rows())}));
 }
 
 void Mesh::add_scalars(const std::vector<ScalarArray>& scalars) {

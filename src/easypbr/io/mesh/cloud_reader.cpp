@@ -57,7 +57,7 @@ class CloudPlan {
 
     MeshData mesh() {
         MeshData result;
-        arrays_->move_into(result);
+        arrays_->move_into(result, source_);
         return result;
     }
 

@@ -15,6 +15,22 @@ constexpr size_t record_grain = 1 << 15;
 /// Bytes after which the memory of the rows before is given back.
 constexpr size_t record_slab = size_t(64) << 20;
 
+/// Counts what float32 makes of the values of a block.
+void count_rounding(ValueBlock block, ScalarType type, bool swap, const Rounding& rounding,
+                    RoundingCounts& counts) {
+    std::vector<double> values(block.rows);
+    block.out_stride = 1;
+    copy_values(block, type, swap, values.data());
+    for (const double value : values) rounding.count(value, counts);
+}
+
+void count_rounding(const ValueBlock& block, ScalarType type, bool swap, const Column& column) {
+    if (!column.rounding) return;
+    RoundingCounts counts;
+    count_rounding(block, type, swap, *column.rounding, counts);
+    column.rounding->add(counts);
+}
+
 /// Reads one element; keeps what the functions below share.
 class ElementReader {
   public:
@@ -135,6 +151,7 @@ class ElementReader {
                 copy_values(block, property.type, swap_, column.doubles + begin * column.stride);
             if (column.integers)
                 copy_values(block, property.type, swap_, column.integers + begin * column.stride);
+            count_rounding(block, property.type, swap_, column);
             if (column.indices)
                 copy_values(block, property.type, swap_, column.indices->values.data() + begin * widths[i]);
             if (column.values)
@@ -163,6 +180,7 @@ class ElementReader {
         std::vector<const char*> starts;
         const char* p = body;
         for (Column& column : plan_.columns) {
+            if (column.rounding) column.rounding->clear();  // Of rows that were read as if all were alike.
             if (column.indices) start_lists(*column.indices);
             if (column.values) start_lists(*column.values);
         }
@@ -181,7 +199,10 @@ class ElementReader {
         }
         parallel_chunks(element_.count, record_grain, [&](size_t begin, size_t end) {
             const char* in = starts[begin / record_grain];
-            for (size_t row = begin; row < end; ++row) in = read_row(in, row);
+            std::vector<RoundingCounts> counts(plan_.columns.size());
+            for (size_t row = begin; row < end; ++row) in = read_row(in, row, counts);
+            for (size_t i = 0; i < counts.size(); ++i)
+                if (plan_.columns[i].rounding) plan_.columns[i].rounding->add(counts[i]);
             progress_.advance(size_t(in - starts[begin / record_grain]));
         });
         return p;
@@ -221,7 +242,7 @@ class ElementReader {
         add(column.values);
     }
 
-    const char* read_row(const char* in, size_t row) const {
+    const char* read_row(const char* in, size_t row, std::vector<RoundingCounts>& counts) const {
         for (size_t i = 0; i < element_.properties.size(); ++i) {
             const Property& property = element_.properties[i];
             const Column& column = plan_.columns[i];
@@ -232,6 +253,7 @@ class ElementReader {
             }
             const ValueBlock block{in, 0, 1, width, 0, column.scale, column.shift};
             if (column.floats) copy_values(block, property.type, swap_, column.floats + row * column.stride);
+            if (column.rounding) count_rounding(block, property.type, swap_, *column.rounding, counts[i]);
             if (column.doubles)
                 copy_values(block, property.type, swap_, column.doubles + row * column.stride);
             if (column.integers)
@@ -284,6 +306,7 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
             const ValueBlock block{in, stride, end - begin, 1, column.stride, column.scale, column.shift};
             const size_t place = (first + begin) * column.stride;
             if (column.floats) copy_values(block, type, swap, column.floats + place);
+            count_rounding(block, type, swap, column);
             if (column.doubles) copy_values(block, type, swap, column.doubles + place);
             if (column.integers) copy_values(block, type, swap, column.integers + place);
             in += size_of(type);

@@ -10,6 +10,7 @@
 
 #include "easypbr/io/source/source.h"
 #include "easypbr/io/tables/polygons.h"
+#include "easypbr/scene/rounding.h"
 
 namespace easypbr::io {
 
@@ -22,6 +23,11 @@ constexpr size_t size_of(ScalarType type) {
 
 constexpr bool is_integer(ScalarType type) {
     return type < ScalarType::float16;
+}
+
+/// Whether it has numbers within the range of float32 that float32 has not.
+constexpr bool is_finer_than_float(ScalarType type) {
+    return size_of(type) >= 4 && type != ScalarType::float32;
 }
 
 struct Property {
@@ -52,6 +58,7 @@ struct Column {
     double scale = 1, shift = 0;
     List<int32_t>* indices = nullptr;  ///< list targets
     List<float>* values = nullptr;
+    Rounding* rounding = nullptr;  ///< beside `floats`: counts what float32 makes of the values
 
     bool is_scaled() const { return scale != 1 || shift != 0; }
     bool is_skipped() const { return !floats && !doubles && !integers && !bits && !indices && !values; }

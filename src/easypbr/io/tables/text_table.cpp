@@ -71,7 +71,10 @@ class ChunkReader {
     ChunkReader(const Source& source, const TextChunk& chunk, const TextStyle& style,
                 const std::vector<ElementPlan>& plans)
         : source_(source), chunk_(chunk), style_(style), plans_(plans) {
-        for (const ElementPlan& plan : plans) lists_.emplace_back(plan.columns.size());
+        for (const ElementPlan& plan : plans) {
+            lists_.emplace_back(plan.columns.size());
+            rounding_.emplace_back(plan.columns.size());
+        }
     }
 
     /// Values of columns of integers that are none or do not fit.
@@ -86,6 +89,7 @@ class ChunkReader {
             if (plan == plans_.size()) break;
             p = read_row(p, plan, row++);
         }
+        add_rounding();
         return std::move(lists_);
     }
 
@@ -102,6 +106,7 @@ class ChunkReader {
             } else if (column.floats) {
                 column.floats[row * column.stride] =
                     column.is_scaled() ? float(number<double>(p, property) * column.scale + column.shift)
+                    : column.rounding  ? counted(p, property, *column.rounding, rounding_[plan][i])
                                        : number<float>(p, property);
             } else if (column.integers) {
                 column.integers[row * column.stride] = integer(p, property);
@@ -112,6 +117,23 @@ class ChunkReader {
             }
         }
         return p;
+    }
+
+    /// Numbers of few characters are read once: float32 tells them apart.
+    float counted(const char*& p, const Property& property, const Rounding& rounding,
+                  RoundingCounts& counts) const {
+        constexpr ptrdiff_t most_exact_characters = 7;
+        const char* again = p = skip_blanks(p, chunk_.end);
+        const float value = number<float>(p, property);
+        const bool is_long = p - again > most_exact_characters;
+        rounding.count(is_long ? number<double>(again, property) : double(value), counts);
+        return value;
+    }
+
+    void add_rounding() const {
+        for (size_t plan = 0; plan < plans_.size(); ++plan)
+            for (size_t i = 0; i < rounding_[plan].size(); ++i)
+                if (Rounding* rounding = plans_[plan].columns[i].rounding) rounding->add(rounding_[plan][i]);
     }
 
     /// What a row ends without is missing; what is left out between delimiters has no value.
@@ -197,6 +219,7 @@ class ChunkReader {
     const TextStyle style_;
     const std::vector<ElementPlan>& plans_;
     ChunkLists lists_;
+    std::vector<std::vector<RoundingCounts>> rounding_;  ///< per plan and column
     Misfits misfits_;
 };
 

@@ -136,6 +136,16 @@ void normalize_columns(const std::vector<int>& columns, ArrayXf::Dense& C) {
     tidy_colors(C);
 }
 
+std::unique_ptr<Rounding> rounding_for(const Property& property) {
+    if (!is_finer_than_float(property.type)) return nullptr;
+    if (!property.missing) return std::make_unique<Rounding>();
+    return std::make_unique<Rounding>(*property.missing * property.scale + property.shift);
+}
+
+void warn_of_lost(const Source& source, const std::string& name, const Rounding* rounding) {
+    if (rounding) warn_of_rounding(source.path.string(), name, rounding->counts());
+}
+
 /// Values that stand for none become NaN.
 void clear_missing(const Property& property, Array1f::Dense& values) {
     if (!property.missing) return;
@@ -183,10 +193,14 @@ void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t c
         std::string name = plain;
         int& number = numbers.try_emplace(plain, 1).first->second;
         while (!taken.insert(name).second) name = fmt::format("{}_{}", plain, ++number);
-        scalars_.push_back({name, field.property, Array1f::Dense(Eigen::Index(count))});
+        scalars_.push_back(
+            {name, field.property, Array1f::Dense(Eigen::Index(count)), rounding_for(field.property)});
         columns.push_back(field.column);
     }
-    for (size_t i = 0; i < columns.size(); ++i) columns[i]->floats = scalars_[i].values.data();
+    for (size_t i = 0; i < columns.size(); ++i) {
+        columns[i]->floats = scalars_[i].values.data();
+        columns[i]->rounding = scalars_[i].rounding.get();
+    }
 }
 
 void VertexArrays::recentre(std::vector<Vec3d> samples) {
@@ -205,7 +219,7 @@ void VertexArrays::recentre_positions() {
     });
 }
 
-void VertexArrays::move_into(MeshData& mesh) {
+void VertexArrays::move_into(MeshData& mesh, const Source& source) {
     tidy_normals(N_);
     normalize_columns(ranged_colors_, C_);
     tidy_uv(UV_);
@@ -219,6 +233,7 @@ void VertexArrays::move_into(MeshData& mesh) {
     if (L_.size()) mesh.L = std::move(L_);
     if (I_.size()) mesh.I = std::move(I_);
     for (Scalar& scalar : scalars_) {
+        warn_of_lost(source, scalar.name, scalar.rounding.get());
         clear_missing(scalar.property, scalar.values);
         mesh.scalars.push_back({scalar.name, std::move(scalar.values)});
     }
@@ -240,8 +255,10 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         if (!field.column->is_skipped() || has_name(normal_names, field.property.name) ||
             field.property.name == "texnumber")
             continue;
-        scalars_.emplace_back(scalar_name(field.property.name), Array1f::Dense(rows));
-        field.column->floats = scalars_.back().second.data();
+        scalars_.push_back(
+            {scalar_name(field.property.name), Array1f::Dense(rows), rounding_for(field.property)});
+        field.column->floats = scalars_.back().values.data();
+        field.column->rounding = scalars_.back().rounding.get();
     }
 }
 
@@ -250,11 +267,11 @@ ArrayXf::Dense FaceArrays::take_colors() {
     return std::exchange(C_, {});
 }
 
-void FaceArrays::move_into(MeshData& mesh) {
+void FaceArrays::move_into(MeshData& mesh, const Source& source) {
     if (mesh.F.rows() == 0) return;
     std::set<std::string> taken;
     for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
-    std::erase_if(scalars_, [&](const auto& scalar) { return !taken.insert(scalar.first).second; });
+    std::erase_if(scalars_, [&](const auto& scalar) { return !taken.insert(scalar.name).second; });
     const bool has_labels = mesh.L.empty() && L_.size();
     if (!has_labels && scalars_.empty()) return;
     tell_faces_from_vertices(mesh);
@@ -265,7 +282,10 @@ void FaceArrays::move_into(MeshData& mesh) {
         return result;
     };
     if (has_labels) mesh.L = of_triangles(L_);
-    for (const auto& [name, values] : scalars_) mesh.scalars.push_back({name, of_triangles(values)});
+    for (const Scalar& scalar : scalars_) {
+        warn_of_lost(source, scalar.name, scalar.rounding.get());
+        mesh.scalars.push_back({scalar.name, of_triangles(scalar.values)});
+    }
 }
 
 bool is_known_field(std::string_view name) {

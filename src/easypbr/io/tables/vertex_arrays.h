@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,13 +44,15 @@ class VertexArrays {
 
     /// Fills the mesh, with attributes in the ranges that MeshData promises: colours of other types than
     /// uint8 and uint16 may be 0 .. 1, 0 .. 255 or 0 .. 65535. Leaves nothing here.
-    void move_into(MeshData& mesh);
+    /// Warns where float32 takes what tells the values of scalars apart.
+    void move_into(MeshData& mesh, const Source& source);
 
   private:
     struct Scalar {
         std::string name;
         Property property;
         Array1f::Dense values;
+        std::unique_ptr<Rounding> rounding;  ///< null where float32 has all values of the type
     };
 
     void plan_scalars(const std::vector<VertexField>& fields, size_t count);
@@ -79,13 +82,19 @@ class FaceArrays {
 
     /// Gives each triangle the values of its polygon; those that the vertices have too are left out. Where
     /// they would pass for values of the vertices, a vertex is added (tell_faces_from_vertices).
-    void move_into(MeshData& mesh);
+    void move_into(MeshData& mesh, const Source& source);
 
   private:
+    struct Scalar {
+        std::string name;
+        Array1f::Dense values;
+        std::unique_ptr<Rounding> rounding;  ///< null where float32 has all values of the type
+    };
+
     ArrayXf::Dense C_;
     std::vector<int> ranged_colors_;
     Array1i::Dense L_;
-    std::vector<std::pair<std::string, Array1f::Dense>> scalars_;
+    std::vector<Scalar> scalars_;
 };
 
 /// Whether a field of this name is recognised, not just kept as scalars.

@@ -11,6 +11,7 @@
 #include "easypbr/io/tables/polygons.h"
 #include "easypbr/io/tables/vertex_arrays.h"
 #include "easypbr/scene/mesh_arrays.h"
+#include "easypbr/scene/rounding.h"
 
 namespace easypbr::io {
 namespace {
@@ -52,9 +53,9 @@ struct NamedArray {
     NpyArray array;
 };
 
-/// All values of a plain array, row by row.
+/// All values of a plain array, row by row. `rounding`: counts what float32 makes of those of one column.
 template <class Values>
-Values values_of(const NamedArray& named) {
+Values values_of(const NamedArray& named, Rounding* rounding = nullptr) {
     const NpyArray& array = named.array;
     Values values(Eigen::Index(array.rows() * array.columns()));
     const std::vector<Element> elements = array.elements(std::vector<std::string>(array.columns(), "_"));
@@ -70,6 +71,7 @@ Values values_of(const NamedArray& named) {
             else
                 column.floats = values.data() + next++;
             column.stride = array.columns();
+            column.rounding = rounding;
         }
     }
     read_binary_elements(named.source, array.data, array.endian, plans);
@@ -205,6 +207,14 @@ class NpzReader {
         return result;
     }
 
+    Eigen::VectorXf scalars_of(const NamedArray& named, const std::string& name) const {
+        Rounding rounding;
+        const bool is_fine = is_finer_than_float(named.array.fields[0].type);
+        Eigen::VectorXf values = values_of<Eigen::VectorXf>(named, is_fine ? &rounding : nullptr);
+        warn_of_rounding(source_.path.string(), name, rounding.counts());
+        return values;
+    }
+
     void add_face_values() {
         if (face_values_.empty()) return;
         tell_faces_from_vertices(mesh_);
@@ -213,7 +223,7 @@ class NpzReader {
                 mesh_.L = of_triangles(values_of<Integers>(*named));
             else if (const std::string name = scalar_name(named->name); std::ranges::none_of(
                          mesh_.scalars, [&](const ScalarArray& s) { return s.name == name; }))
-                mesh_.scalars.push_back({name, of_triangles(values_of<Eigen::VectorXf>(*named))});
+                mesh_.scalars.push_back({name, of_triangles(scalars_of(*named, name))});
         }
     }
 

@@ -58,7 +58,7 @@ class PlyReader {
         make_mesh();
         add_materials();
         set_front();
-        if (strip_triangles_.empty()) face_values_.move_into(mesh_);
+        if (strip_triangles_.empty()) face_values_.move_into(mesh_, source_);
         return std::move(mesh_);
     }
 
@@ -181,7 +181,7 @@ class PlyReader {
     /// Where faces carry texture coordinates, makes one vertex of each different (vertex, uv).
     void split_vertices() {
         const bool cloud = is_cloud();
-        vertices_.move_into(mesh_);
+        vertices_.move_into(mesh_, source_);
         if (!splats_.empty()) take_splats();
         if (cloud) drop_points_without_position(source_, mesh_);
         if (corner_uv_.value_count() == 0) return;

@@ -70,7 +70,8 @@ Element describe(const Source& source, const TextLayout& layout, const Samples& 
         const bool is_text = i < samples.is_text.size() && samples.is_text[i];
         if (is_text) skipped.push_back(names[i].empty() ? fmt::format("{}", i + 1) : names[i]);
         if (names[i].empty()) names[i] = fmt::format("column_{}", i + 1);
-        points.properties.push_back({is_text ? "_" : names[i], ScalarType::float32, {}, 1, 0});
+        // A text may have more digits than float32 holds.
+        points.properties.push_back({is_text ? "_" : names[i], ScalarType::float64, {}, 1, 0});
     }
     if (!skipped.empty())
         log_warning(fmt::format("{}: columns that hold words are left out: {}", source.path.string(),

@@ -1,0 +1,74 @@
+#include "easypbr/scene/rounding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr {
+namespace {
+
+/// Beyond it double precision itself has no longer every whole number.
+constexpr double most_exact_double = 9007199254740992.0;
+
+}  // namespace
+
+void RoundingCounts::add(double value) {
+    if (!std::isfinite(value)) return;
+    const float kept = float(value);
+    low_ = std::min(low_, value);
+    high_ = std::max(high_, value);
+    if (value != std::floor(value) || std::abs(value) > most_exact_double)
+        all_whole_ = false;
+    else if (double(kept) != value && rounded_++ == 0)
+        first_rounded_ = value;
+    if (std::isfinite(previous_) && value != previous_) {
+        ++distinct_;
+        if (kept == float(previous_) && merged_++ == 0) first_merged_ = {previous_, value};
+    }
+    previous_ = value;
+}
+
+void RoundingCounts::add(const RoundingCounts& other) {
+    if (rounded_ == 0) first_rounded_ = other.first_rounded_;
+    if (merged_ == 0) first_merged_ = other.first_merged_;
+    distinct_ += other.distinct_;
+    merged_ += other.merged_;
+    rounded_ += other.rounded_;
+    all_whole_ = all_whole_ && other.all_whole_;
+    low_ = std::min(low_, other.low_);
+    high_ = std::max(high_, other.high_);
+}
+
+bool RoundingCounts::are_lost_neighbors() const {
+    return 2 * merged_ > distinct_ && std::max(std::abs(low_), std::abs(high_)) > 4 * (high_ - low_);
+}
+
+std::string RoundingCounts::text() const {
+    if (merged_ > 0) return fmt::format("holds {} and {} as one number", first_merged_[0], first_merged_[1]);
+    return fmt::format("holds {} as {}", first_rounded_, double(float(first_rounded_)));
+}
+
+RoundingCounts rounding_of(std::span<const double> values) {
+    constexpr size_t grain = 1 << 15;
+    Rounding rounding;
+    parallel_chunks(values.size(), grain, [&](size_t begin, size_t end) {
+        RoundingCounts piece;
+        for (size_t i = begin; i < end; ++i) piece.add(values[i]);
+        rounding.add(piece);
+    });
+    return rounding.counts();
+}
+
+void warn_of_rounding(const std::string& where, const std::string& name, const RoundingCounts& counts) {
+    if (counts.are_lost())
+        log_warning(
+            fmt::format("{}{}scalars '{}' are kept as float32, which {}: subtract an offset from them first, "
+                        "or give IDs as labels",
+                        where, where.empty() ? "" : ": ", name, counts.text()));
+}
+
+}  // namespace easypbr
