@@ -208,4 +208,16 @@ TEST(Glb, RefusesAnEmptyMeshAndLeavesNothing) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(Glb, ColorsOfVerticesAreWrittenBesideWhite) {
+    // square() has colours and no material; a colour that was chosen stays.
+    EXPECT_EQ(first_child(round_trip(Mesh(square())).mesh).materials.at(0).base_color, Vec3(1, 1, 1));
+    MeshData chosen = square();
+    chosen.materials.resize(1);
+    chosen.materials[0].base_color = Vec3(0.5f, 0.25f, 1);
+    EXPECT_EQ(first_child(round_trip(Mesh(chosen)).mesh).materials.at(0).base_color, Vec3(0.5f, 0.25f, 1));
+    MeshData plain = square();
+    plain.C = {};
+    EXPECT_TRUE(first_child(round_trip(Mesh(plain)).mesh).materials.at(0).has_default_color());
+}
+
 }  // namespace easypbr::glb_test

@@ -475,4 +475,19 @@ TEST(Gltf, SurvivesDeeplyNestedJson) {
     EXPECT_THROW(io::decode_gltf(as_span(text), "x.gltf"), FormatError);
 }
 
+TEST(Gltf, AFactorOf06BesideColorsIsNoDefault) {
+    const auto material_of = [](bool with_colors) {
+        GltfBuilder builder;
+        builder.triangle();
+        nlohmann::json& primitive = builder.json["meshes"][0]["primitives"][0];
+        if (with_colors) primitive["attributes"]["COLOR_0"] = builder.floats({1, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
+        primitive["material"] = 0;
+        builder.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {0.6, 0.6, 0.6, 1}}}}}};
+        return node(decode(builder)).materials.at(0);
+    };
+    EXPECT_EQ(material_of(true).base_color, Vec3(0.6f, 0.6f, 0.6f));
+    EXPECT_FALSE(material_of(true).has_default_color());
+    EXPECT_TRUE(material_of(false).has_default_color());
+}
+
 }  // namespace easypbr::gltf_test

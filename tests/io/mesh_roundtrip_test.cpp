@@ -470,4 +470,13 @@ TEST(MeshFiles, AnUnwritableTargetIsAnErrorAndLeavesNothing) {
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(MeshFiles, ObjColorsAreWrittenBesideWhite) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(7, 30);
+    mesh.C = ArrayXf::Dense::Constant(mesh.V.rows(), 3, 0.5f);
+    mesh.materials.resize(1);
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_EQ(Mesh(folder / "m.obj").snapshot()->materials.at(0).base_color, Vec3(1, 1, 1));
+}
+
 }  // namespace easypbr::mesh_roundtrip_test

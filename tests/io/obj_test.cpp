@@ -286,4 +286,18 @@ TEST(Obj, WritesNormalsOfFacesWhereAMeshIsDrawnFlat) {
     }
 }
 
+TEST(Obj, AKdOf06BesideColorsIsNoDefault) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl", "newmtl a\nKd 0.6 0.6 0.6\nnewmtl b\nNs 10\n");
+    const auto material_of = [&](const std::string& name, const std::string& color) {
+        return read(fmt::format("mtllib m.mtl\nv 0 0 0{0}\nv 1 0 0{0}\nv 0 1 0{0}\nusemtl {1}\nf 1 2 3\n",
+                                color, name),
+                    folder / "test.obj")
+            .materials.at(0);
+    };
+    EXPECT_FALSE(material_of("a", " 1 0 0").has_default_color());
+    EXPECT_TRUE(material_of("a", "").has_default_color());
+    EXPECT_TRUE(material_of("b", " 1 0 0").has_default_color());
+}
+
 }  // namespace easypbr::obj_test

@@ -395,4 +395,24 @@ TEST(HoleFilling, ClosesGapsBetweenPoints) {
 }
 
 }  // namespace
+// A triangle of one colour under a default material is drawn as under a white one, under a given 0.6 darker.
+TEST(Colors, OfVerticesAreTimesAGivenFactor) {
+    const auto factor = [](bool is_given) {
+        MeshData data;
+        data.V = Array3f::Dense{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+        data.F = Array3i::Dense{{0, 1, 2}};
+        data.C = ArrayXf::Dense::Constant(3, 3, 1.0f);
+        data.materials.resize(1);
+        data.materials[0].base_color_given = is_given;
+        Scene scene;
+        scene.show(Mesh(data), "triangle");
+        app::Session session(scene);
+        session.settings().image.size = Vec2i(32, 32);
+        return Vec3(Eigen::Map<const Vec3>(session.render_layers({"albedo"}).at("albedo").at<float>(16, 16)));
+    };
+    // Half precision, if layers have it: 2^-11 of the value.
+    EXPECT_NEAR(factor(false).x(), 1, 1e-3);
+    EXPECT_NEAR(factor(true).x(), 0.6, 1e-3);
+}
+
 }  // namespace easypbr::render::color_test

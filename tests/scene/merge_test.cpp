@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "easypbr/core/color.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/mesh.h"
 
@@ -150,7 +151,9 @@ TEST(Merged, FillsInWhatOnlySomeHave) {
     EXPECT_NO_THROW(validate(both));
     EXPECT_EQ(Eigen::Vector4f(both.C.row(0)), Eigen::Vector4f(0.75f, 0.75f, 0.75f, 1)) << "no alpha: opaque";
     EXPECT_EQ(Eigen::Vector4f(both.C.row(3)), Eigen::Vector4f::Constant(0.25f));
-    EXPECT_EQ(Eigen::Vector4f(both.C.row(6)), Eigen::Vector4f::Ones());
+    // The default material, which is white beside colours, leaves its grey to those.
+    const float grey = srgb_from_linear(0.6f);
+    EXPECT_EQ(Eigen::Vector4f(both.C.row(6)), Eigen::Vector4f(grey, grey, grey, 1));
     EXPECT_EQ(Vec3(both.N.row(0)), Vec3(0, 0, 1)) << "computed from the face";
     EXPECT_EQ(Vec3(both.N.row(3)), Vec3(0.5f, 0.5f, 0.5f));
     EXPECT_EQ(both.UV(0, 0), 0);
@@ -250,4 +253,15 @@ TEST(Flatten, LosesAnOffsetThatAPoseTakesBack) {
 }
 
 }  // namespace
+TEST(Merged, ColorsOfOthersLeaveGivenMaterialsAlone) {
+    MeshData colored = triangle(), painted = triangle();
+    colored.C = ArrayXf(ArrayXf::Dense::Constant(3, 3, 0.25f));
+    painted.materials.resize(1);
+    painted.materials[0].base_color = Vec3(0, 1, 0);
+    EXPECT_EQ(Vec3(merged(std::vector{colored, painted}).C.row(3)), Vec3(1, 1, 1)) << "times its green";
+    painted.materials[0] = {};
+    painted.materials[0].base_color_given = true;
+    EXPECT_EQ(Vec3(merged(std::vector{colored, painted}).C.row(3)), Vec3(1, 1, 1)) << "times its own grey";
+}
+
 }  // namespace easypbr::merge_test

@@ -45,7 +45,7 @@ struct SurfaceShader {
 /// description each.
 struct Material {
     std::string name;
-    Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default counts as white where vertices have colours
+    Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default is white beside colours, see has_default_color()
     float opacity = 1;                  ///< 0 transparent to 1 opaque
     float metallic = 0;                 ///< 0 dielectric to 1 metal
     float roughness = 0.5f;             ///< perceptual, 0 to 1; alpha = roughness^2
@@ -116,6 +116,10 @@ struct Material {
 
     SurfaceShader shader;  ///< of faces
 
+    bool base_color_given = false;  ///< a file says its base colour beside colours of vertices: no default
+
+    /// Whether its base colour is the default, which counts as white where vertices have colours.
+    bool has_default_color() const;
     /// Whether all values are equal and all textures, as Texture::operator== has it.
     bool operator==(const Material&) const = default;
 

@@ -170,6 +170,10 @@ bool Material::has_textures() const {
     return std::ranges::any_of(textures, [&](const MaterialTexture& t) { return bool(this->*t.texture); });
 }
 
+bool Material::has_default_color() const {
+    return !base_color_given && base_color == Material().base_color;
+}
+
 bool Material::is_extended() const {
     return clearcoat > 0 || !sheen_color.isZero() || names_ior() || specular != 1 ||
            specular_color != Vec3::Ones() || transmission > 0 || iridescence > 0 || anisotropy > 0 ||

@@ -10,6 +10,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/mesh.h"
@@ -185,6 +186,30 @@ std::vector<int> join_materials(const MeshData& mesh, JoinedMaterials& joined) {
     return places;
 }
 
+Vec3 color_beside(const Material& material) {
+    return material.has_default_color() ? srgb_from_linear(material.base_color) : Vec3(1, 1, 1);
+}
+
+/// The colours that vertices without any have beside others: a default material, which is white there, leaves
+/// them its grey.
+ArrayXf colors_beside(const MeshData& mesh) {
+    const Material first = mesh.materials.empty() ? Material() : mesh.materials.front();
+    ArrayXf::Dense C = color_beside(first).transpose().replicate(mesh.V.rows(), 1);
+    for (const MeshPart& part : mesh.parts) {
+        const Vec3 color = color_beside(mesh.materials.at(size_t(part.material)));
+        for (int face = part.first_face; face < part.first_face + part.face_count; ++face)
+            for (int corner = 0; corner < 3; ++corner) C.row(mesh.F(face, corner)) = color.transpose();
+    }
+    return C;
+}
+
+ArrayXf joined_colors(Meshes meshes) {
+    if (std::ranges::all_of(meshes, [](const MeshData& mesh) { return mesh.C.empty(); })) return {};
+    return joined<ArrayXf>(meshes, PerElement::vertex, 1.0f, [](const MeshData& mesh) {
+        return mesh.C.empty() ? colors_beside(mesh) : mesh.C;
+    });
+}
+
 void join_parts(MeshData& whole, Meshes meshes) {
     JoinedMaterials joined(whole.materials);
     int faces = 0;
@@ -267,7 +292,7 @@ MeshData merged(Meshes meshes) {
     whole.V = joined<Array3f>(meshes, PerElement::vertex, 0.0f,
                               [&](const MeshData& mesh) { return positions_from(mesh, whole.offset); });
     whole.N = joined_normals(meshes);
-    whole.C = joined(meshes, &MeshData::C, 1.0f);
+    whole.C = joined_colors(meshes);
     whole.UV = joined(meshes, &MeshData::UV, 0.0f);
     whole.uv_tangents = joined(meshes, &MeshData::uv_tangents, 0.0f);
     if (all_have(meshes, [](const MeshData& mesh) { return !mesh.T.empty() && !mesh.B.empty(); })) {

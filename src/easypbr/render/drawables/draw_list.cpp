@@ -44,9 +44,7 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     const bool own_color = !source.settings.material.color.value();
     item.with_colors =
         !mesh.C.empty() && (source.colors.from_data || (own_color && source.colors.vertex_colors));
-    // The default of a material is no colour beside those of the vertices.
-    const bool has_default_color = item.material.base_color == Material().base_color;
-    if (source.colors.from_data || (item.with_colors && has_default_color))
+    if (source.colors.from_data || (item.with_colors && item.material.has_default_color()))
         item.material.base_color = Vec3::Ones();
     if (!source.colors.textured || (source.colors.from_data && item.with_colors))
         item.material.base_color_texture = {};

@@ -61,7 +61,10 @@ void override_extensions(Material& m, const MaterialSettings& settings) {
 Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures) {
     Material m = material;
     // A value from outside stands for the whole: the material's own map would multiply it away.
-    if (settings.color.value()) m.base_color = linear_from_srgb(*settings.color), m.base_color_texture = {};
+    if (settings.color.value()) {
+        m.base_color = linear_from_srgb(*settings.color), m.base_color_texture = {};
+        m.base_color_given = true;
+    }
     if (settings.metallic.value()) m.metallic = *settings.metallic, m.metallic_texture = {};
     if (settings.roughness.value()) m.roughness = *settings.roughness, m.roughness_texture = {};
     if (settings.emissive.value()) m.emissive = linear_from_srgb(*settings.emissive), m.emissive_texture = {};

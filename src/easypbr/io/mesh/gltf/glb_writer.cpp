@@ -124,9 +124,12 @@ class GlbBuilder {
     void add_parts(const MeshData& data, const OrderedJson& attributes, OrderedJson& primitives) {
         std::vector<size_t> materials;
         const bool transparent = has_transparent_colors(data.C);
-        for (const Material& material : data.materials)
+        std::vector<Material> given = data.materials;
+        if (given.empty()) given.emplace_back();
+        for (Material& material : given) {
+            if (!data.C.empty() && material.has_default_color()) material.base_color.setOnes();
             materials.push_back(materials_.add(material, transparent));
-        if (materials.empty()) materials.push_back(materials_.add(Material(), transparent));
+        }
         std::vector<MeshPart> parts = data.parts;
         if (parts.empty()) parts.push_back({"", 0, int(data.F.rows()), 0});
         for (const MeshPart& part : parts) {

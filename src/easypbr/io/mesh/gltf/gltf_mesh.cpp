@@ -377,7 +377,11 @@ class MeshBuilder {
         if (ArrayXf::Dense N = merged(&VertexBlock::N, 0); N.rows()) out_.N = Array3f(N);
         if (ArrayXf::Dense UV = merged(&VertexBlock::UV, 0); UV.rows()) out_.UV = Array2f(UV);
         if (ArrayXf::Dense T = merged(&VertexBlock::tangents, 0); T.rows()) out_.uv_tangents = Array4f(T);
-        if (ArrayXf::Dense C = merged(&VertexBlock::C, 1); C.rows()) out_.C = ArrayXf(std::move(C));
+        if (ArrayXf::Dense C = merged(&VertexBlock::C, 1); C.rows()) {
+            out_.C = ArrayXf(std::move(C));
+            // They are what these factors multiply, a factor of 0.6 as well.
+            for (Material& material : out_.materials) material.base_color_given = true;
+        }
         for (const std::string& name : value_names_) {
             const float missing = name == gltf_label_name       ? -1.0f
                                   : name == gltf_intensity_name ? 0.0f

@@ -204,6 +204,7 @@ class MtlParser {
         const Vec3 diffuse = entry_->diffuse.value_or(m.base_color_texture ? Vec3(1, 1, 1) : m.base_color);
         // Many exporters write black beside a map and mean the map alone.
         m.base_color = m.base_color_texture && diffuse.isZero() ? Vec3(1, 1, 1) : diffuse;
+        m.base_color_given = entry_->diffuse.has_value();
         const Vec3 emission = entry_->emission.value_or(Vec3(0, 0, 0));
         m.emissive = m.emissive_texture && emission.isZero() ? Vec3(1, 1, 1) : emission;
         m.metallic = std::clamp(entry_->metallic.value_or(m.metallic_texture ? 1.0f : 0.0f), 0.0f, 1.0f);

@@ -89,6 +89,8 @@ class ObjReader {
         if (E_.size()) mesh_.E = std::move(E_);
         triangulate(std::move(faces_), mesh_);
         fill_missing_normals();
+        if (mesh_.C.empty())
+            for (Material& material : mesh_.materials) material.base_color_given = false;
         if (mesh_.materials.size() > 1) assign_materials(material_of_face_, mesh_);
         return std::move(mesh_);
     }

@@ -40,7 +40,7 @@ std::optional<Vec3> color_of_lines(const DrawItem& item) {
     const Vec3& base = item.material.base_color;
     if (item.style.line_color) return linear_from_srgb(*item.style.line_color);
     if (has_own_colors(item)) return {};
-    return base == Material().base_color ? linear_from_srgb(wireframe_color) : base;
+    return item.material.has_default_color() ? linear_from_srgb(wireframe_color) : base;
 }
 
 std::vector<Stroke> strokes_of(const DrawItem& item) {
