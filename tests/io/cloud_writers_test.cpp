@@ -131,6 +131,7 @@ TEST(CloudFiles, FormatsOfPointsSayThatFacesAreLeftOut) {
     const TemporaryFolder folder;
     MeshData mesh = cloud(10);
     mesh.F = Array3i::Dense::Zero(2, 3);
+    mesh.scalars = {};
     std::vector<std::string> warnings;
     set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
     Mesh(mesh).save(folder / "m.pcd");
@@ -184,6 +185,32 @@ TEST(CloudFiles, ChildrenAreMerged) {
     const auto back = Mesh(folder / "m.xyz").snapshot();
     ASSERT_EQ(back->V.rows(), 15);
     EXPECT_FLOAT_EQ(back->V(10, 0), child.V()(0, 0) + 100);
+}
+
+TEST(CloudFiles, ScalarsKeepNamesInOtherLetters) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense(Array3f::Dense::Random(3, 3));
+    for (const char* name : {"温度", "湿度", "größe", "a b", "a_b", "a,b", "heat (K)", "50%"})
+        mesh.scalars.push_back({name, Array1f::Dense::Constant(3, float(mesh.scalars.size()))});
+    for (const char* file : {"c.pcd", "c.csv", "c.xyz", "c.npy", "c.npz", "c.ply"}) {
+        std::vector<std::string> warnings;
+        set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+        Mesh(mesh).save(folder / file);
+        set_log_sink({});
+        ASSERT_EQ(warnings.size(), 1u) << file;
+        for (const char* part : {"'a b' as 'a_b_2'", "'a,b' as 'a_b_3'", "'heat (K)' as 'heat__K_'"})
+            EXPECT_NE(warnings[0].find(part), std::string::npos) << file << ": " << warnings[0];
+        EXPECT_EQ(warnings[0].find("温度"), std::string::npos) << file;
+        const auto back = Mesh(folder / file).snapshot();
+        ASSERT_EQ(back->scalars.size(), mesh.scalars.size()) << file;
+        float value = 0;
+        for (const char* name : {"温度", "湿度", "größe", "a_b_2", "a_b", "a_b_3", "heat__K_", "50%"}) {
+            const auto found = std::ranges::find(back->scalars, name, &ScalarArray::name);
+            ASSERT_NE(found, back->scalars.end()) << file << " " << name;
+            EXPECT_EQ(found->values[0], value++) << file << " " << name;
+        }
+    }
 }
 
 }  // namespace easypbr::cloud_writers_test

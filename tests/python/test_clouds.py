@@ -88,3 +88,14 @@ def test_errors_are_python_errors(tmp_path):
 def test_clouds_are_listed_among_what_is_read():
     for extension in ("pcd", "xyz", "pts", "csv", "txt", "asc", "npy", "npz", "las", "bin"):
         assert extension in easypbr._easypbr.readable_mesh_extensions()
+
+
+def test_numpy_reads_names_of_scalars_in_other_letters(tmp_path):
+    cloud = Mesh()
+    cloud.V = np.random.default_rng(1).random((5, 3))
+    cloud.scalars.update({"温度": np.arange(5), "湿度": np.arange(5) + 1})
+    cloud.save(tmp_path / "c.npy")
+    cloud.save(tmp_path / "c.npz")
+    rows, arrays = np.load(tmp_path / "c.npy"), np.load(tmp_path / "c.npz")
+    for number, name in enumerate(["温度", "湿度"]):
+        assert (rows[name] == np.arange(5) + number).all() and (arrays[name] == rows[name]).all()

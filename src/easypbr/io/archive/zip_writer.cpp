@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace easypbr::io {
@@ -21,6 +22,13 @@ void append(std::string& out, Numbers... numbers) {
 /// No time, no date: the same content gives the same bytes. The date 0 is none; this is 1 January 1980.
 constexpr uint16_t no_time = 0, first_date = 33;
 
+/// Names are UTF-8 (general purpose bit 11); those of ASCII are the same without it.
+uint16_t flags_of(const std::string& name) {
+    const bool is_ascii =
+        std::ranges::all_of(name, [](char c) { return static_cast<unsigned char>(c) < 128; });
+    return is_ascii ? 0 : 1 << 11;
+}
+
 constexpr uint16_t none16 = 0;
 constexpr uint32_t none32 = 0;
 
@@ -30,8 +38,8 @@ void ZipWriter::add(const std::string& name, std::string_view bytes) {
     const Record record{name, bytes.size(), bytes_.size(),
                         uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()))};
     // The sizes stand in the extra field, whatever they are.
-    append(bytes_, uint32_t(0x04034b50), zip_version, none16, none16, no_time, first_date, record.checksum,
-           elsewhere, elsewhere, uint16_t(name.size()), uint16_t(20));
+    append(bytes_, uint32_t(0x04034b50), zip_version, flags_of(name), none16, no_time, first_date,
+           record.checksum, elsewhere, elsewhere, uint16_t(name.size()), uint16_t(20));
     bytes_ += name;
     append(bytes_, uint16_t(1), uint16_t(16), record.size, record.size);
     bytes_ += bytes;
@@ -41,9 +49,9 @@ void ZipWriter::add(const std::string& name, std::string_view bytes) {
 std::string ZipWriter::finish() {
     const uint64_t begin = bytes_.size();
     for (const Record& record : records_) {
-        append(bytes_, uint32_t(0x02014b50), zip_version, zip_version, none16, none16, no_time, first_date,
-               record.checksum, elsewhere, elsewhere, uint16_t(record.name.size()), uint16_t(28), none16,
-               none16, none16, none32, elsewhere);
+        append(bytes_, uint32_t(0x02014b50), zip_version, zip_version, flags_of(record.name), none16, no_time,
+               first_date, record.checksum, elsewhere, elsewhere, uint16_t(record.name.size()), uint16_t(28),
+               none16, none16, none16, none32, elsewhere);
         bytes_ += record.name;
         append(bytes_, uint16_t(1), uint16_t(24), record.size, record.size, record.place);
     }

@@ -102,8 +102,8 @@ std::string encode_npz(const MeshData& mesh) {
     add("L", "<i4", mesh.L);
     add("I", "<f4", mesh.I);
     if (!mesh.offset.isZero(0)) add("offset", "<f8", mesh.offset);
-    for (const ScalarArray& scalar : mesh.scalars)
-        add(scalar_field_name(plain_name(scalar.name)), "<f4", scalar.values);
+    const std::vector<std::string> names = scalar_field_names(mesh);
+    for (size_t i = 0; i < names.size(); ++i) add(names[i], "<f4", mesh.scalars[i].values);
     return archive.finish();
 }
 

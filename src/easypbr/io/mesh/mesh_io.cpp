@@ -21,6 +21,7 @@
 #include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/texture_mapping.h"
+#include "easypbr/io/tables/vertex_rows.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/normals.h"
 
@@ -182,6 +183,14 @@ void warn_of_left_out(const MeshData& mesh, const fs::path& path, const std::str
                                 mesh.name.empty() ? "" : fmt::format(" of '{}'", mesh.name)));
 }
 
+/// GLB has any name, and OBJ and SPZ have no scalars.
+void warn_of_renamed(const MeshData& mesh, const fs::path& path) {
+    const std::vector<std::string> renamed = renamed_scalars(mesh);
+    if (!renamed.empty() && extension_of(path) != "spz")
+        log_warning(fmt::format("{}: scalars get names that the format holds: {}", path.string(),
+                                fmt::join(renamed, ", ")));
+}
+
 std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
     if (extension == "ply") return encode_ply(mesh, fs::absolute(path).parent_path());
     if (extension == "npz") return encode_npz(mesh);
@@ -325,6 +334,7 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
     if (extension == "obj") return save_obj(mesh, path);
     const MeshData flat = flattened_for(extension, mesh);
     warn_of_left_out(flat, path, extension);
+    warn_of_renamed(flat, path);
     write_file(path, encode(flat, path, extension));
 }
 

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <set>
+#include <string_view>
 
+#include "easypbr/core/markup.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/vertex_arrays.h"
 
@@ -62,10 +65,36 @@ void add_labels_and_scalars(const MeshData& mesh, PerElement element, std::vecto
         return !array.empty() && element_of(mesh, array.rows()) == element;
     };
     if (is_of(mesh.L)) parts.push_back(raw_part({"label"}, ScalarType::int32, mesh.L));
-    for (const ScalarArray& scalar : mesh.scalars)
-        if (is_of(scalar.values))
-            parts.push_back(
-                raw_part({scalar_field_name(plain_name(scalar.name))}, ScalarType::float32, scalar.values));
+    const std::vector<std::string> names = scalar_field_names(mesh);
+    for (size_t i = 0; i < names.size(); ++i)
+        if (is_of(mesh.scalars[i].values))
+            parts.push_back(raw_part({names[i]}, ScalarType::float32, mesh.scalars[i].values));
+}
+
+/// UTF-8 without what ends a name, a line or a number's unit in one of the formats.
+std::string plain_name(const std::string& given) {
+    constexpr std::string_view separators = ",;\"'#/\\()[]";
+    std::string name = valid_utf8(given);
+    for (char& c : name) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code <= ' ' || code == 127 || separators.find(c) != std::string_view::npos) c = '_';
+    }
+    return name;
+}
+
+/// The same, none twice.
+std::vector<std::string> plain_names(const MeshData& mesh) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
+    for (const ScalarArray& scalar : mesh.scalars) {
+        const std::string plain = plain_name(scalar.name);
+        std::string name = plain;
+        for (int number = 2; name != scalar.name && !taken.insert(name).second; ++number)
+            name = fmt::format("{}_{}", plain, number);
+        names.push_back(std::move(name));
+    }
+    return names;
 }
 
 template <class Number>
@@ -93,10 +122,19 @@ void append_number(ScalarType type, const char* at, std::string& out) {
 
 }  // namespace
 
-std::string plain_name(std::string name) {
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
-    return name;
+std::vector<std::string> scalar_field_names(const MeshData& mesh) {
+    std::vector<std::string> names = plain_names(mesh);
+    for (std::string& name : names) name = scalar_field_name(name);
+    return names;
+}
+
+std::vector<std::string> renamed_scalars(const MeshData& mesh) {
+    const std::vector<std::string> names = plain_names(mesh);
+    std::vector<std::string> renamed;
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] != mesh.scalars[i].name)
+            renamed.push_back(fmt::format("'{}' as '{}'", mesh.scalars[i].name, names[i]));
+    return renamed;
 }
 
 std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style) {

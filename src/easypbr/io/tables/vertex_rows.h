@@ -28,11 +28,15 @@ struct RowStyle {
 
 /// All that a mesh has for its vertices: positions (float64, with the offset added, unless that is zero),
 /// normals, colours as bytes, texture coordinates, tangents, bitangent lengths, labels, intensities, scalars.
-/// Names of scalars are plain_name()s, as scalar_field_name() says.
+/// Names of scalars are scalar_field_names().
 std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style = {});
 
-/// A name with '_' for what is no letter, digit, '.' or '-'.
-std::string plain_name(std::string name);
+/// What the scalars of a mesh are called in a file: with '_' for what separates names in some format or
+/// quotes them, with a number where that makes two alike, and as scalar_field_name() says.
+std::vector<std::string> scalar_field_names(const MeshData& mesh);
+
+/// The scalars that get another name back, for a message: "'heat (K)' as 'heat__K_'".
+std::vector<std::string> renamed_scalars(const MeshData& mesh);
 
 /// What the faces have beside their corners: labels and scalars.
 std::vector<RowPart> face_row_parts(const MeshData& mesh);
