@@ -109,4 +109,21 @@ TEST(Voxelize, CentresAreOnTheGrid) {
 }
 
 }  // namespace
+TEST(Subsample, CellsOfSplatsHaveTheirColors) {
+    MeshData data;
+    data.V = Array3f::Dense{{0.25f, 0.5f, 0.5f}, {0.75f, 0.5f, 0.5f}, {1.5f, 0.5f, 0.5f}};
+    data.splats.scales = Array3f::Dense::Ones(3, 3);
+    data.splats.rotations = Array4f::Dense::Constant(3, 4, 0.5f);
+    data.splats.opacities = Array1f::Dense::Ones(3);
+    // The first harmonic is constant: a colour of 0.5 where it is 0.
+    data.splats.sh = ArrayXf::Dense::Zero(3, 3);
+    for (const auto& points : {subsample_voxels(Mesh(data), 1), voxelize(Mesh(data), 1)}) {
+        const auto found = points.snapshot();
+        EXPECT_TRUE(found->splats.empty());
+        ASSERT_EQ(found->C.rows(), 2);
+        EXPECT_NEAR(found->C(0, 0), 0.5f, 1e-6f);
+        EXPECT_NEAR(found->C(1, 2), 0.5f, 1e-6f);
+    }
+}
+
 }  // namespace easypbr::subsample_test

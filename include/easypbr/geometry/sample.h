@@ -25,8 +25,9 @@ Mesh subsample_random(const Mesh& mesh, int64_t count, uint64_t seed = 0);
 /// One vertex for each cube of edge `cell_size` (on a grid through the origin of the mesh's frame) that has
 /// some: at their mean position, with the mean of their normals (of length 1 again), colours, texture
 /// coordinates, intensities and scalars (of those that are not NaN) and their most frequent label (of several
-/// the least). In the order of the cells' first vertices. Faces, edges, tangents and what belongs to faces
-/// are left out. Throws ArgumentError unless cell_size > 0 and there are at most 2^21 cells along each axis.
+/// the least). Splats count as their cloud_from_splats(). In the order of the cells' first vertices. Faces,
+/// edges, tangents and what belongs to faces are left out. Throws ArgumentError unless cell_size > 0 and
+/// there are at most 2^21 cells along each axis.
 Mesh subsample_voxels(const Mesh& mesh, double cell_size);
 
 /// The same cubes as voxels: V are their centres, and MeshData::voxel_size is their edge, so that they are

@@ -146,6 +146,12 @@ MeshData averaged(const MeshData& mesh, const CellGroups& groups) {
     return result;
 }
 
+/// Splats have their colours in their harmonics, which have no mean: they become those of their means.
+std::shared_ptr<const MeshData> points_of(const Mesh& mesh) {
+    const auto data = mesh.snapshot();
+    return data->splats.empty() ? data : cloud_from_splats(mesh).snapshot();
+}
+
 }  // namespace
 
 Mesh subsample_random(const Mesh& mesh, int64_t count, uint64_t seed) {
@@ -162,13 +168,13 @@ Mesh subsample_random(const Mesh& mesh, int64_t count, uint64_t seed) {
 }
 
 Mesh subsample_voxels(const Mesh& mesh, double cell_size) {
-    const auto data = mesh.snapshot();
+    const auto data = points_of(mesh);
     geometry::require_vertices("subsample", *data);
     return Mesh(averaged(*data, CellGroups("subsample", data->V, cell_size)));
 }
 
 Mesh voxelize(const Mesh& mesh, double cell_size) {
-    const auto data = mesh.snapshot();
+    const auto data = points_of(mesh);
     geometry::require_vertices("voxelize", *data);
     const CellGroups groups("voxelize", data->V, cell_size);
     MeshData voxels = averaged(*data, groups);
