@@ -128,8 +128,9 @@ def test_splats_are_edited(easypbr, splats, steps, count):
 
 
 def test_splats_become_other_data(easypbr, splats):
-    for step, attributes in (("--to-cloud", ["colors"]), ("--to-surfels", ["colors", "normals", "tangents"])):
-        easypbr("convert", splats, "out.ply", step)
+    for step, attributes in ((["--to-cloud"], ["colors"]), (["--to-surfels"], ["colors", "normals", "tangents"]),
+                             (["--voxelize", "2"], ["colors"]), (["--subsample-cells", "2"], ["colors"])):
+        easypbr("convert", splats, "out.ply", *step)
         assert info(easypbr, "out.ply")["attributes"] == attributes
     easypbr("convert", splats, "out.ply", "--prune-opacity", "0.5", "--to-mesh", "64")
     assert info(easypbr, "out.ply")["faces"] > 100
