@@ -275,7 +275,8 @@ TEST(MeshFiles, PlySaysWhichTexturesItLeavesOut) {
     mesh.materials[0].base_color_texture.image = flat(1);
     Mesh(mesh).save(folder / "m.ply");
     set_log_sink({});
-    EXPECT_NE(warnings.find("no place for textures: left out"), std::string::npos) << warnings;
+    EXPECT_NE(warnings.find("no place for material.base_color_texture: left out"), std::string::npos)
+        << warnings;
 }
 
 /// A square whose texture coordinates are its corners.
@@ -477,6 +478,94 @@ TEST(MeshFiles, ObjColorsAreWrittenBesideWhite) {
     mesh.materials.resize(1);
     Mesh(mesh).save(folder / "m.obj");
     EXPECT_EQ(Mesh(folder / "m.obj").snapshot()->materials.at(0).base_color, Vec3(1, 1, 1));
+}
+
+TEST(MeshFiles, WithoutVerticesReplaceNothing) {
+    const TemporaryFolder folder;
+    for (const char* name :
+         {"m.ply", "m.obj", "m.glb", "m.pcd", "m.xyz", "m.csv", "m.npy", "m.npz", "m.spz"}) {
+        write_file(folder / name, "old");
+        EXPECT_THROW(Mesh().save(folder / name), ArgumentError) << name;
+        EXPECT_EQ(FileBytes(folder / name).text(), "old") << name;
+    }
+}
+
+TEST(MeshFiles, ColorsOfMaterialsBecomeThoseOfVertices) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    mesh.F = Array3i::Dense{{0, 1, 2}, {3, 4, 5}};
+    mesh.materials.resize(2);
+    mesh.materials[0].base_color = Vec3(1, 0, 0);
+    mesh.materials[1].base_color = Vec3(0, 0, 1);
+    mesh.materials[1].opacity = 0.5f;
+    mesh.materials[1].clearcoat = 1;
+    mesh.parts = {{"red", 0, 1, 0}, {"blue", 1, 1, 1}};
+    for (const char* name : {"m.ply", "m.npz"}) {
+        std::string warnings;
+        set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+        Mesh(mesh).save(folder / name);
+        set_log_sink({});
+        EXPECT_NE(warnings.find("no place for material.clearcoat: left out"), std::string::npos) << warnings;
+        const auto back = Mesh(folder / name).snapshot();
+        ASSERT_EQ(back->C.cols(), 4) << name;
+        // The curve of sRGB takes 1 to 1 within the rounding of its power.
+        EXPECT_LE((Eigen::Vector4f(back->C.row(0)) - Eigen::Vector4f(1, 0, 0, 1)).norm(), 1e-6f) << name;
+        // An opacity of 0.5 is 128 of 255 in PLY.
+        EXPECT_LE((Eigen::Vector4f(back->C.row(5)) - Eigen::Vector4f(0, 0, 1, 0.5f)).norm(),
+                  0.5f / 255 + 1e-6f)
+            << name;
+    }
+    // Vertex 2 would have both colours.
+    mesh.F = Array3i::Dense{{0, 1, 2}, {2, 4, 5}};
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    Mesh(mesh).save(folder / "m.ply");
+    set_log_sink({});
+    for (const char* name : {"material.base_color", "material.opacity", "material.clearcoat"})
+        EXPECT_NE(warnings.find(name), std::string::npos) << warnings;
+    EXPECT_TRUE(Mesh(folder / "m.ply").snapshot()->C.empty());
+}
+
+TEST(MeshFiles, ObjNamesWhatMaterialsLose) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.F = Array3i::Dense{{0, 1, 2}};
+    mesh.materials.resize(1);
+    mesh.materials[0].metallic = 1;
+    mesh.materials[0].emissive = Vec3(1, 2, 3);
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_EQ(warnings, "");
+    mesh.materials[0].transmission = 1;
+    mesh.materials[0].alpha_mode = AlphaMode::blend;
+    mesh.materials[0].occlusion_texture.image = flat(1);
+    Mesh(mesh).save(folder / "m.obj");
+    set_log_sink({});
+    EXPECT_NE(
+        warnings.find("material.transmission, material.occlusion_texture, material.alpha_mode: left out"),
+        std::string::npos)
+        << warnings;
+}
+
+TEST(MeshFiles, ScenesNameWhatStandsBesideTheMesh) {
+    const TemporaryFolder folder;
+    io::LoadedScene scene;
+    scene.mesh = Mesh(random_mesh(3, 10));
+    scene.lights.emplace("lamp", Light());
+    scene.cameras = {{"near", Camera()}, {"far", Camera()}};
+    scene.variants = {"red"};
+    for (const char* name : {"m.glb", "m.ply"}) {
+        std::string warnings;
+        set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+        io::save_scene(scene, folder / name);
+        set_log_sink({});
+        EXPECT_NE(warnings.find("no place for lights (1), cameras (2), material variants (1): left out"),
+                  std::string::npos)
+            << warnings;
+    }
 }
 
 }  // namespace easypbr::mesh_roundtrip_test

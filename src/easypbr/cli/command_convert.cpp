@@ -89,12 +89,12 @@ int run_convert(const ConvertOptions& options) {
     check_writable(options.out);
     if (!is_image_file(options.in)) {
         const io::LoadOptions load = app::load_options(settings_of(options), options.format);
-        const Mesh mesh = load_input(options.in, load).mesh;
-        if (load.crease_angle_deg) split_creases(mesh, *load.crease_angle_deg);
+        io::LoadedScene scene = load_input(options.in, load);
+        if (load.crease_angle_deg) split_creases(scene.mesh, *load.crease_angle_deg);
         Phases phases(options.steps.empty() ? 1 : int(options.steps.size()) + 2);
-        const Mesh changed = apply_mesh_steps(mesh, options.steps, phases);
+        scene.mesh = apply_mesh_steps(scene.mesh, options.steps, phases);
         phases.begin("writing " + options.out);
-        io::save_mesh(changed, options.out);
+        io::save_scene(scene, options.out);
         return 0;
     }
     io::save_image(io::load_image(options.in), options.out);

@@ -28,8 +28,8 @@ struct LoadedScene {
 struct LoadOptions {
     /// STL: welded corners whose faces meet at a larger angle keep separate normals; none: 30.
     std::optional<float> crease_angle_deg = {};
-    double memory_gb = 0;  ///< most that the arrays and images of the file may take; 0: three quarters of
-                           ///< what the machine has left
+    double memory_gb = 0;      ///< most that the arrays and images of the file may take; 0: three quarters of
+                               ///< what the machine has left
     std::string format = {};   ///< extension of the format that a file is in; empty: its own extension
     std::string variant = {};  ///< glTF: the material variant; empty: the file's own materials
     bool strict = false;       ///< points without a finite position are an error: FormatError
@@ -55,9 +55,14 @@ LoadedScene load_scene(std::span<const std::byte> bytes, const std::filesystem::
 Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// Writes PLY (binary), OBJ (+ MTL), GLB, NPZ, or the points as PCD (binary), XYZ (also txt, asc), CSV or
-/// NPY, by the extension; children are merged in world space for all but GLB. Throws FileError, or
-/// FormatError for an unknown extension. Never leaves half a file.
+/// NPY, by the extension; children are merged in world space for all but GLB. Formats without materials get
+/// their colours and opacities as colours of vertices. A warning names what the format has no place for.
+/// Throws FileError, FormatError for an unknown extension, or ArgumentError for a mesh without vertices.
+/// Never leaves half a file.
 void save_mesh(const Mesh& mesh, const std::filesystem::path& path);
+
+/// save_mesh() of the scene's mesh. The warning names the rest too, which no format takes.
+void save_scene(const LoadedScene& scene, const std::filesystem::path& path);
 
 /// Throws FormatError where save_mesh() does for the extension alone.
 void check_mesh_extension(const std::filesystem::path& path);

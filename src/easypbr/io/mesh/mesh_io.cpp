@@ -18,7 +18,7 @@
 #include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
-#include "easypbr/io/mesh/gltf/gltf_values.h"
+#include "easypbr/io/mesh/left_out.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/io/tables/vertex_rows.h"
@@ -125,62 +125,10 @@ void warn_of_splats(const Mesh& mesh, const fs::path& path) {
     });
 }
 
-std::vector<std::string> labels_and_scalars(const MeshData& mesh, bool of_faces_only) {
-    std::vector<std::string> names;
-    const auto is_left_out = [&](Eigen::Index rows) {
-        return rows > 0 && (!of_faces_only || element_of(mesh, rows) == PerElement::face);
-    };
-    const char* const of = of_faces_only ? " of faces" : "";
-    if (is_left_out(mesh.L.rows())) names.push_back(fmt::format("labels{}", of));
-    for (const ScalarArray& scalar : mesh.scalars)
-        if (is_left_out(scalar.values.rows()))
-            names.push_back(fmt::format("scalars '{}'{}", scalar.name, of));
-    return names;
-}
-
-/// PLY names the file of one texture: the base colour of a mesh with one material.
-std::vector<std::string> textures_beside_ply(const MeshData& mesh) {
-    const bool is_left_out = std::ranges::any_of(mesh.materials, [&](Material material) {
-        if (mesh.materials.size() == 1 && !material.base_color_texture.path.empty())
-            material.base_color_texture = {};
-        return material.has_textures();
-    });
-    return is_left_out ? std::vector<std::string>{"textures"} : std::vector<std::string>{};
-}
-
-/// What a format has for textures, where one is written; null: none is.
-const TextureMapping* texture_mapping(const MeshData& mesh, const std::string& extension) {
-    if (extension == "obj") return &obj_mapping();
-    const bool has_file = mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty();
-    return extension == "ply" && has_file ? &ply_mapping() : nullptr;
-}
-
-/// What of a mesh has no place in a format, beside faces and splats: names for a message.
-std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension) {
-    if (extension == "glb") return left_out_of_gltf(mesh);
-    if (extension == "npz") return {};
-    std::vector<std::string> names;
-    if (extension == "ply") names = textures_beside_ply(mesh);
-    if (const TextureMapping* mapping = texture_mapping(mesh, extension))
-        std::ranges::move(left_out_mappings(*mapping, mesh), std::back_inserter(names));
-    if (extension == "ply") return names;
-    if (extension != "obj" && extension != "spz") return labels_and_scalars(mesh, true);
-    if (extension == "spz" && !mesh.N.empty()) names.emplace_back("normals");
-    if (extension == "spz" && !mesh.C.empty()) names.emplace_back("colours beside those of splats");
-    if (extension == "spz" && !mesh.UV.empty()) names.emplace_back("texture coordinates");
-    if (extension == "obj" && has_transparent_colors(mesh.C)) names.emplace_back("the alpha of colours");
-    if (!mesh.T.empty() || !mesh.B.empty()) names.emplace_back("tangents");
-    if (!mesh.I.empty()) names.emplace_back("intensities");
-    std::ranges::move(labels_and_scalars(mesh, false), std::back_inserter(names));
-    return names;
-}
-
-void warn_of_left_out(const MeshData& mesh, const fs::path& path, const std::string& extension) {
-    const std::vector<std::string> names = left_out(mesh, extension);
+void warn_of_left_out(const std::vector<std::string>& names, const fs::path& path, const std::string& of) {
     if (!names.empty())
         log_warning(fmt::format("{}: the format has no place for {}: left out{}", path.string(),
-                                fmt::join(names, ", "),
-                                mesh.name.empty() ? "" : fmt::format(" of '{}'", mesh.name)));
+                                fmt::join(names, ", "), of.empty() ? "" : fmt::format(" of '{}'", of)));
 }
 
 /// GLB has any name, and OBJ and SPZ have no scalars.
@@ -226,10 +174,8 @@ MeshData flattened_for(const std::string& extension, const Mesh& mesh) {
     return flat;
 }
 
-void save_obj(const Mesh& mesh, const fs::path& path) {
+void save_obj(const MeshData& flat, const fs::path& path) {
     const fs::path library = fs::path(path).replace_extension(".mtl");
-    const MeshData flat = flattened_for("obj", mesh);
-    warn_of_left_out(flat, path, "obj");
     const ObjText text = encode_obj(flat, library.filename().string(), fs::absolute(path).parent_path());
     FileSet files;
     for (const auto& [name, image] : text.images)
@@ -238,6 +184,39 @@ void save_obj(const Mesh& mesh, const fs::path& path) {
     if (!text.mtl.empty()) files.add(library, text.mtl);
     files.add(path, text.obj);
     files.commit();
+}
+
+void require_vertices(const Mesh& mesh, const fs::path& path) {
+    bool has_some = false;
+    for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+        has_some = has_some || !data->V.empty();
+    });
+    if (!has_some)
+        throw ArgumentError(fmt::format("cannot write {}: the mesh has no vertices", path.string()));
+}
+
+/// `beside`: what of a scene is left out beside the mesh.
+void save(const Mesh& mesh, const std::vector<std::string>& beside, const fs::path& path) {
+    const std::string extension = extension_of(path);
+    check_mesh_extension(path);
+    require_vertices(mesh, path);
+    check_writable(path);
+    if (!contains(splat_extensions, extension)) warn_of_splats(mesh, path);
+    if (extension == "glb") {
+        warn_of_left_out(beside, path, "");
+        for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+            warn_of_left_out(left_out(*data, extension), path, data->name);
+        });
+        return save_glb(mesh, path);
+    }
+    const MeshData own = flattened_for(extension, mesh);
+    const MeshData flat = extension == "obj" ? own : with_material_colors(own);
+    std::vector<std::string> names = left_out(flat, extension);
+    names.insert(names.end(), beside.begin(), beside.end());
+    warn_of_left_out(names, path, flat.name);
+    if (extension == "obj") return save_obj(flat, path);
+    warn_of_renamed(flat, path);
+    write_file(path, encode(flat, path, extension));
 }
 
 uint64_t limit_of(const LoadOptions& options) {
@@ -321,21 +300,11 @@ void check_mesh_extension(const fs::path& path) {
 }
 
 void save_mesh(const Mesh& mesh, const fs::path& path) {
-    const std::string extension = extension_of(path);
-    check_mesh_extension(path);
-    check_writable(path);
-    if (!contains(splat_extensions, extension)) warn_of_splats(mesh, path);
-    if (extension == "glb") {
-        for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
-            warn_of_left_out(*data, path, extension);
-        });
-        return save_glb(mesh, path);
-    }
-    if (extension == "obj") return save_obj(mesh, path);
-    const MeshData flat = flattened_for(extension, mesh);
-    warn_of_left_out(flat, path, extension);
-    warn_of_renamed(flat, path);
-    write_file(path, encode(flat, path, extension));
+    save(mesh, {}, path);
+}
+
+void save_scene(const LoadedScene& scene, const fs::path& path) {
+    save(scene.mesh, left_out(scene), path);
 }
 
 std::vector<std::string> native_extensions() {

@@ -115,4 +115,10 @@ std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const 
     return names;
 }
 
+const TextureMapping* texture_mapping(const MeshData& mesh, const std::string& extension) {
+    if (extension == "obj") return &obj_mapping();
+    const bool has_file = mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty();
+    return extension == "ply" && has_file ? &ply_mapping() : nullptr;
+}
+
 }  // namespace easypbr::io

@@ -28,4 +28,7 @@ void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh);
 /// the image.
 std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const MeshData& mesh);
 
+/// What a format has for textures, where one is written; null: none is.
+const TextureMapping* texture_mapping(const MeshData& mesh, const std::string& extension);
+
 }  // namespace easypbr::io
