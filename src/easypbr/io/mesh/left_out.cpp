@@ -7,7 +7,6 @@
 #include <set>
 
 #include "easypbr/core/color.h"
-#include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/scene/material_table.h"
 
@@ -91,7 +90,7 @@ Properties properties_of_ply(const MeshData& mesh) {
 }
 
 std::vector<std::string> arrays_left_out(const MeshData& mesh, const std::string& extension) {
-    if (extension == "ply" || extension == "npz") return {};
+    if (extension == "ply" || extension == "npz" || extension == "glb") return {};
     if (extension != "obj" && extension != "spz") return labels_and_scalars(mesh, true);
     std::vector<std::string> names;
     if (extension == "spz" && !mesh.N.empty()) names.emplace_back("normals");
@@ -153,8 +152,7 @@ ArrayXf colors_times(const MeshData& mesh, const std::vector<int>& material,
 }  // namespace
 
 std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension) {
-    std::vector<std::string> names =
-        extension == "glb" ? left_out_of_gltf(mesh) : arrays_left_out(mesh, extension);
+    std::vector<std::string> names = arrays_left_out(mesh, extension);
     if (extension == "obj")
         add_materials(mesh, properties_of_obj, names);
     else if (extension != "glb" && mesh.splats.empty())

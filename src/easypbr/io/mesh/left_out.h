@@ -8,7 +8,7 @@
 
 namespace easypbr::io {
 
-/// What of a mesh is left out, beside faces and splats. Formats without materials have
+/// What of a mesh is left out, beside faces, splats, and left_out_of_gltf(). Formats without materials have
 /// with_material_colors().
 std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension);
 

@@ -18,6 +18,7 @@
 #include "easypbr/io/mesh/file_scene.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/left_out.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/texture_mapping.h"
@@ -205,7 +206,9 @@ void save(const Mesh& mesh, const std::vector<std::string>& beside, const fs::pa
     if (extension == "glb") {
         warn_of_left_out(beside, path, "");
         for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
-            warn_of_left_out(left_out(*data, extension), path, data->name);
+            std::vector<std::string> names = left_out_of_gltf(*data);
+            std::ranges::move(left_out(*data, extension), std::back_inserter(names));
+            warn_of_left_out(names, path, data->name);
         });
         return save_glb(mesh, path);
     }
