@@ -198,7 +198,8 @@ ArrayXf colors_beside(const MeshData& mesh) {
     for (const MeshPart& part : mesh.parts) {
         const Vec3 color = color_beside(mesh.materials.at(size_t(part.material)));
         for (int face = part.first_face; face < part.first_face + part.face_count; ++face)
-            for (int corner = 0; corner < 3; ++corner) C.row(mesh.F(face, corner)) = color.transpose();
+            for (int corner = 0; corner < 3; ++corner)
+                C.row(mesh.F(face, corner)).head<3>() = color.transpose();
     }
     return C;
 }
