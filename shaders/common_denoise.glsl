@@ -6,9 +6,6 @@ uniform vec2 u_size;
 // Falls of the weights: over the square of the normals' difference (that of cos^128), of the reflectances', and over the
 // logarithm of the depth beyond the surface's own slope.
 const float normal_fall = 64.0 * 4.0;  // of normals that are brought to 0 to 1
-// Light whose noise is larger than what turned normals change is taken from them too: surfaces may turn so fast that
-// hardly a pixel around is alike.
-const float noisy_fall = 1.0;
 const float color_fall = 30.0;
 const float depth_fall = 80.0;
 
@@ -43,10 +40,10 @@ Guides guides_at(ivec2 here) {
     return g;
 }
 
-// For light of that luminance and variance.
-float fall_of_normals(float bright, float variance) {
-    return min(normal_fall, noisy_fall * bright * bright / max(variance, 1e-20));
-}
+// A whole number and a part, 0 to 1, in one.
+float packed_fall(float fall, float part) { return floor(fall) + 0.5 * part; }
+float fall_in(float both) { return floor(both); }
+float part_in(float both) { return 2.0 * fract(both); }
 
 // The exponent of the weight of a place of the picture, `away` pixels to the sides.
 float unlikeness(Guides own, vec4 guides, vec2 away) {

@@ -2,7 +2,8 @@
 // single pixel is zero where all its paths were dark.
 #include "common_denoise.glsl"
 
-layout(location = 0) out vec4 o_estimate;  // luminance and its variance; variance of the pixel's own light; unused
+// Luminance and its variance; variance of the pixel's own light; see packed_fall().
+layout(location = 0) out vec4 o_estimate;
 
 const int reach = 2;
 // The variance of few frames may be as much too small.
@@ -12,8 +13,10 @@ const float doubt = 2.0;
 const float spot_deviations = 12.0;
 const float own_deviations = 4.0;
 
-// Over the square of normals' difference, where noise is looked for.
+// Normals' fall where it is looked for how light changes with them.
 const float wide_fall = 8.0;
+// It changes with their squared difference by this part of its own square at least.
+const float least_change = 0.25;
 
 // What is left of a luminance with the sums of it, of squares and of weights over the pixels around.
 float limited(float bright, float variance, float sum, float squares, float weights) {
@@ -22,26 +25,34 @@ float limited(float bright, float variance, float sum, float squares, float weig
     return weights > 3.0 && bright > most ? most / bright : 1.0;
 }
 
-// The noise of light around, of surfaces that are turned farther too: see fall_of_normals().
+// Normals' fall for light of that noise: pixels add the least error whose light differs by less than noise does. Surfaces may
+// turn so fast that hardly a pixel around is alike.
 float fall_around(ivec2 here, Guides own) {
     ivec2 last = ivec2(u_size) - 1;
     own.normal_fall = wide_fall;
-    float sum = 0.0, noise = 0.0, weights = 0.0;
+    float sum = 0.0, squares = 0.0, noise = 0.0, turned = 0.0, weights = 0.0;
     for (int y = -reach; y <= reach; ++y) {
         for (int x = -reach; x <= reach; ++x) {
             ivec2 at = here + ivec2(x, y);
             bool inside = is_inside(at);
             at = clamp(at, ivec2(0), last);
             vec4 guides = texelFetch(u_guides, at, 0), light = texelFetch(u_light, at, 0);
+            vec3 turn = unpacked(guides.r) - own.normal;
             float weight = exp(-unlikeness(own, guides, vec2(float(abs(x)), float(abs(y)))));
+            float bright = luminance(light.rgb);
             weight = inside && guides.a > 0.0 ? weight : 0.0;
-            sum += weight * luminance(light.rgb);
+            sum += weight * bright;
+            squares += weight * bright * bright;
             noise += weight * light.a;
+            turned += weight * dot(turn, turn);
             weights += weight;
         }
     }
-    float scale = 1.0 / max(weights, 1e-10);
-    return fall_of_normals(sum * scale, noise * scale);
+    float scale = 1.0 / max(weights, 1e-10), bright = sum * scale;
+    noise *= scale;
+    float detail = max(squares * scale - bright * bright - noise, 0.0);
+    float change = max(detail / max(turned * scale, 1e-6), least_change * bright * bright);
+    return min(normal_fall, change / max(noise, 1e-20));
 }
 
 void main() {
@@ -81,5 +92,5 @@ void main() {
     float variance = max(part * part * light_here.a, noise);
     o_estimate = vec4(mix(bright, part * bright_here, detail),
                       max(detail * detail * variance + (1.0 - detail) * (1.0 - detail) * noise_of_sum, noise_of_sum),
-                      variance, part);
+                      variance, packed_fall(own.normal_fall, part));
 }

@@ -11,9 +11,11 @@ layout(location = 0) out vec4 o_light;
 // Standard deviations over which the weight falls with the difference of luminance.
 const float deviations = 4.0;
 
-// The luminance that is compared and its variance; variance of the pixel's own, and how much of its light is taken.
+// The luminance that is compared and its variance; variance of the pixel's own; normals' fall, and how much of its light is
+// taken: see packed_fall().
 vec4 compared(ivec2 at, vec4 light) {
-    return has_estimate ? texelFetch(u_estimate, at, 0) : vec4(luminance(light.rgb), light.a, light.a, 1.0);
+    return has_estimate ? texelFetch(u_estimate, at, 0)
+                        : vec4(luminance(light.rgb), light.a, light.a, packed_fall(normal_fall, 1.0));
 }
 
 // Binomial weights: 1 4 6 4 1 of the first level, 1 2 1 of the others, whose taps lie apart.
@@ -28,7 +30,7 @@ void main() {
     Guides own = guides_at(here);
     vec4 compared_here = compared(here, texelFetch(u_light, here, 0));
     float bright = compared_here.r, spread = deviations * deviations * compared_here.g + 1e-10;
-    own.normal_fall = fall_of_normals(bright, compared_here.b);
+    own.normal_fall = fall_in(compared_here.a);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     int reach = has_estimate ? 2 : 1;
@@ -43,7 +45,7 @@ void main() {
             vec2 away = float(u_step) * vec2(float(abs(x)), float(abs(y)));
             float weight = exp(-unlikeness(own, guides, away) - unlike * unlike / spread);
             weight = inside && guides.a > 0.0 ? weight * kernel(x) * kernel(y) : 0.0;
-            sum += weight * vec4(light.rgb * other.a, weight * other.b);
+            sum += weight * vec4(light.rgb * part_in(other.a), weight * other.b);
             weights += weight;
         }
     }
