@@ -13,8 +13,7 @@
 #include "easypbr/scene/label_colors.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::annotation_test {
-using namespace easypbr::app;
+namespace easypbr::app::annotation_test {
 
 namespace {
 
@@ -515,4 +514,4 @@ TEST(Font, HasWidthsAndAlphabets) {
     }
 }
 
-}  // namespace easypbr::annotation_test
+}  // namespace easypbr::app::annotation_test

@@ -30,7 +30,7 @@ def test_fine_patterns_are_averaged(tmp_path):
 def test_smaller_levels_stay_in_place(tmp_path, width):
     # Columns up to 1024 are black, the others white; four texels and a bit for each pixel. The level of a quarter has
     # 257 columns, and begins where the image does. A pixel's middle lies at the texel (x + 0.5) / 257 * width / 4.
-    edge = np.zeros((64, width), np.uint8)
+    edge = np.zeros((80, width), np.uint8)  # higher than the picture is wide: all columns are seen
     edge[:, 1024:] = 255
     picture = background(edge, (257, 16), tmp_path)
     middle = (np.arange(257) + 0.5) / 257 * width / 4

@@ -98,6 +98,14 @@ INLINE void store_values(std::byte* to, Values values, vbool active, bool all_ac
         if (active.v[k]) std::memcpy(to + bytes * size_t(k), &value, bytes);
     }
 }
+/// Single floats can be replaced or added to.
+INLINE vfloat summed(const std::byte* to, vfloat value, vbool active, bool all_active, Store store) {
+    if (store != Store::add) return value;
+    float before[lanes] = {};
+    for (int k = 0; k < lanes; ++k)
+        if (all_active || active.v[k]) std::memcpy(before + k, to + sizeof(float) * size_t(k), sizeof(float));
+    return value + load_lanes(before, 0);
+}
 INLINE Shorts low_bits(vint v) {
     return __builtin_convertvector(v.v, Shorts);
 }
@@ -142,7 +150,8 @@ INLINE void store_pixels(const Output& output, size_t at, const vec4& c, vbool a
         case Pixels::r16:
             return store_values(data + 2 * at, low_bits(rounded(c.x, 65535)), active, all);
         case Pixels::r32f:
-            return store_values(data + 4 * at, c.x.v, active, all);
+            data += 4 * at;
+            return store_values(data, summed(data, c.x, active, all, region.store).v, active, all);
         case Pixels::r16f:
             return store_values(data + 2 * at, to_halves(c.x.v), active, all);
         case Pixels::rgba16:
