@@ -417,8 +417,9 @@ TEST(MeshFiles, SeamsOfTextureCoordinatesStaySmooth) {
         const auto back = Mesh(folder / name).snapshot();
         ASSERT_EQ(back->N.rows(), 6) << name;
         for (const int corner : {back->F(0, 0), back->F(0, 1), back->F(1, 0), back->F(1, 2)})
-            // The angles of corners, which are the weights, are approximated to 1e-5.
-            EXPECT_LT((Vec3(back->N.row(corner)) - halfway).norm(), 1e-5f) << name << " " << corner;
+            // The angles of corners, which are the weights, are approximated to 1e-5: two may differ by twice
+            // that.
+            EXPECT_LT((Vec3(back->N.row(corner)) - halfway).norm(), 2e-5f) << name << " " << corner;
     }
     // Without seams files need no normals.
     mesh.source_vertex = Array1i(Array1i::Dense{{0}, {1}, {2}, {3}, {4}, {5}});

@@ -251,8 +251,9 @@ TEST(Fields, SayTheSameOfAValueThatNothingHolds) {
               "setting 'camera.position': expected 3 numbers, or 'auto' or 'follow', got [\"a\"]");
     EXPECT_EQ(rejected("camera.position", "[]", "mine: "),
               "mine: camera.position: expected 3 numbers, or 'auto' or 'follow', got []");
-    EXPECT_EQ(rejected("style.flat", std::string(100, 'x')),
-              "setting 'style.flat': expected true or false, got " + std::string(80, 'x'));
+    EXPECT_EQ(
+        rejected("style.flat", std::string(100, 'x')),
+        "setting 'style.flat': expected true or false, or 'auto' or 'follow', got " + std::string(80, 'x'));
 }
 
 TEST(Fields, SuggestNames) {
