@@ -76,19 +76,19 @@ def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
 
 
 @pytest.mark.parametrize("steps, code, message", [
-    (["--decimate", "-1"], 1, "decimate: faces: expected a number >= 0, got -1"),
+    (["--decimate", "-1"], 2, "--decimate: expected a whole number >= 0, got -1"),
     (["--decimate", "many"], 2, "many"),
-    (["--cut-box", "1,1,1,0,0,0"], 1, "error: --cut-box: expected a box whose lowest corner is below its highest"),
+    (["--cut-box", "1,1,1,0,0,0"], 2, "error: --cut-box: expected a box whose lowest corner is below its highest"),
     (["--crease", "-1"], 2, "--crease: setting 'load.crease_deg': expected 0 to 180 degrees"),
     (["--crease", "nan"], 2, "--crease: setting 'load.crease_deg': expected 0 to 180 degrees"),
     (["--crease", "1e30"], 2, "--crease: setting 'load.crease_deg': expected 0 to 180 degrees"),
     (["--memory", "-1"], 2, "--memory: setting 'limits.memory': expected 0 to 1000000 GB, got -1"),
-    (["--voxelize", "nan"], 1, "cell size"),
-    (["--estimate-surfels", "2"], 1, "k: expected a whole number from 3 to 256, got 2"),
+    (["--voxelize", "nan"], 2, "--voxelize: expected a number > 0, got nan"),
+    (["--estimate-surfels", "2"], 2, "--estimate-surfels: expected a whole number from 3 to 256, got 2"),
     (["--decimat", "5"], 2, "did you mean '--decimate'"),
-    (["--scale", "0"], 1, "determinant 0"),
+    (["--scale", "0"], 2, "--scale: expected a finite number other than 0, got 0"),
     (["--crop-box", "1,2,3"], 2, "--crop-box"),
-    (["--crop-sphere", "0,0,0,-1"], 1, "radius"),
+    (["--crop-sphere", "0,0,0,-1"], 2, "a radius > 0, got 0,0,0,-1"),
     (["--crop-sphere", "99,0,0,1"], 1, "nothing stays"),
     (["--decimate-splats", "5"], 1, "expected a mesh with splats"),
 ])

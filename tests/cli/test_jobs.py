@@ -112,9 +112,9 @@ def test_settings_are_saved_where_they_were_read(render, box, tmp_path):
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
-@pytest.mark.parametrize("output", ["missing/out.png", "out.xyz", "."])
-def test_output_is_checked_before_anything_is_read(render, tmp_path, output):
-    message = one_error(render("not-there.obj", "-o", output, code=1))
+@pytest.mark.parametrize("output, code", [("missing/out.png", 1), ("out.xyz", 2), (".", 2)])
+def test_output_is_checked_before_anything_is_read(render, tmp_path, output, code):
+    message = one_error(render("not-there.obj", "-o", output, code=code))
     assert output in message and "not-there" not in message
     assert list(tmp_path.iterdir()) == []
 

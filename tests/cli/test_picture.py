@@ -225,12 +225,14 @@ def test_clear_glass_vanishes_in_a_uniform_environment(picture, sphere, constant
 
 
 def test_a_ground_catches_shadows_on_a_transparent_background(picture, sphere):
-    arguments = (sphere, "--background", "transparent", "--camera-position", "0,4,5", "--camera-target", "0,0,0")
+    # Anti-aliasing of single frames mixes codes.
+    arguments = (sphere, "--background", "transparent", "--camera-position", "0,4,5", "--camera-target", "0,0,0", "--set",
+                 "image.antialias=none")
     assert not (picture(*arguments)[40, :, 3] > 0).any()
     caught = picture(*arguments, "--set", "ground.mode=shadow")
     row = caught[40]
     # Black where some light is missing, and nowhere all of it: studio and three lights.
-    assert (row[:, :3] == 0).all() and 10 < row[:, 3].max() < 255
+    assert (row[:, :3] == 0).all() and 4 < row[:, 3].max() < 255
     half = picture(*arguments, "--set", "ground.mode=shadow", "--set", "ground.shadow_strength=0.5")[40]
     # The alpha is that of codes: light that is missing, in codes of 255. 3.5: half a code of both, by the slope of the sRGB
     # curve, up to 2.28, and twice that of the half.

@@ -105,11 +105,17 @@ TEST(PathLayers, LightPassesByOpacity) {
     EXPECT_NEAR(mean_of_middle(render_linear(session, 256)), 0.25, 0.01);
 }
 
-/// Mean distance of the channels, of 255.
+/// Mean distance of the colours on a white page, of 255: what is hardly covered has any colour.
 double apart(const Image& a, const Image& b) {
+    const auto shown = [](const Image& image, size_t pixel, size_t c) {
+        const uint8_t* code = image.pixels<uint8_t>().data() + 4 * pixel;
+        return 255 - (255 - code[c]) * code[3] / 255.0;
+    };
     double sum = 0;
-    for (size_t i = 0; i < a.bytes().size(); ++i) sum += std::abs(int(a.bytes()[i]) - int(b.bytes()[i]));
-    return sum / double(a.bytes().size());
+    const size_t pixels = a.bytes().size() / 4;
+    for (size_t i = 0; i < pixels; ++i)
+        for (size_t c = 0; c < 3; ++c) sum += std::abs(shown(a, i, c) - shown(b, i, c));
+    return sum / double(3 * pixels);
 }
 
 // Half of the noisy picture's error at most, of light and of what is covered: a shadow that the ground
