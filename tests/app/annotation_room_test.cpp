@@ -156,7 +156,8 @@ TEST(AnnotationRoom, IsLeftByAnAutomaticCamera) {
                     EXPECT_TRUE(fits || size.x() < size.y()) << size.transpose() << " " << bars;
                     const Camera camera = session.camera();
                     EXPECT_EQ(camera.T_world_cam.matrix() != plain.T_world_cam.matrix(), fits);
-                    EXPECT_EQ(camera.T_world_cam.linear(), plain.T_world_cam.linear());
+                    // The same direction, but for what is rounded in doubles on the way from another place.
+                    EXPECT_LT((camera.T_world_cam.linear() - plain.T_world_cam.linear()).norm(), 1e-12);
                     EXPECT_FALSE(camera.intrinsics);
                     const Extent e = extent_of(session.scene().snapshot(), camera, size, strip);
                     // The float 0.05, and doubles' roundings.

@@ -86,7 +86,10 @@ def test_shadows_of_a_transparent_image_are_as_dark_on_a_white_page(size, sample
         drawn[name] = Viewer(size, {**settings, **background}, scene).render(samples=samples) / 255.0
     alpha = drawn["cut"][..., 3:]
     blended = drawn["cut"][..., :3] * alpha + 1 - alpha  # as viewers of PNG do
-    shadow = (drawn["cut"][..., :3] == 0).all(axis=2) & (alpha[..., 0] > 0)
+    black = (drawn["cut"][..., :3] == 0).all(axis=2)
+    # Beside the box a pixel may show a little of it, which is black too.
+    apart = np.lib.stride_tricks.sliding_window_view(np.pad(black, 1, constant_values=True), (3, 3)).all(axis=(2, 3))
+    shadow = apart & (alpha[..., 0] > 0)
     assert shadow.sum() > 100 and alpha[shadow].max() > 0.1
     # 2: both are rounded to codes, and sums of frames are kept in floats.
     assert abs(blended - drawn["page"][..., :3])[shadow].max() <= 2 / 255
@@ -97,9 +100,9 @@ def test_the_alpha_of_surfaces_before_a_shadow_catcher_is_what_they_cover(size):
     """Before a ground that no shadow falls on: with it and without it the same."""
     scene = Scene()
     scene.show(shapes.box(), "box")
-    settings = {"background.mode": "transparent", "ground.shadow_strength": 0.0}
+    settings = {"background.mode": "transparent", "ground.shadow_strength": 0.0, "rays.enabled": False}
     with_ground, without = (Viewer(size, {**settings, "ground.mode": mode}, scene).render(samples=8) for mode in ("shadow", "none"))
     partly = (without[..., 3] > 0) & (without[..., 3] < 255)
     assert partly.any()
     # 1: the share of the ground is a sum of its own.
-    assert abs(with_ground.astype(int) - without).max() <= 1
+    assert abs(with_ground.astype(int) - without)[..., 3].max() <= 1

@@ -70,7 +70,8 @@ def test_merge_keeps_materials_and_fills_in():
     assert len(both.F) == len(red.F) + len(ball.F)
     assert both.materials[0].base_color == (1, 0, 0) and len(both.materials) == 2
     np.testing.assert_array_equal(both.V[:24].max(axis=0), [3.5, 0.5, 0.5])
-    assert (both.C[24:] == 1).all()
+    # The grey of a default material: sRGB of 0.6, 1.055 * 0.6^(1/2.4) - 0.055.
+    np.testing.assert_allclose(both.C[24:], 0.79774, atol=1e-5)
     three = Mesh.merge(*[shapes.box()] * 3)
     assert len(three.V) == 72 and len(three.materials) == 1
     with pytest.raises(easypbr.ArgumentError, match="expected meshes"):

@@ -94,7 +94,7 @@ def test_misspelt_names_get_a_hint(view):
         ("background.color", "#12", "background.color"),
         ("background.color", (1, 2, 3), "background.color"),
         ("camera.margin", None, "None is no value"),
-        ("camera.position", ["a", "b", "c"], "camera.position.*expected numbers"),
+        ("camera.position", ["a", "b", "c"], "camera.position.*expected 3 numbers"),
     ],
 )
 def test_bad_values_are_refused_and_change_nothing(view, name, value, message):

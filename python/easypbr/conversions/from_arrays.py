@@ -81,12 +81,13 @@ def _face_counts(F: Any, split: Any, polygon_of: Any) -> tuple[int, ...]:
 
 def _scalar(word: str, value: Any, counts: tuple[int, ...]) -> NDArray[Any]:
     """`counts`: of vertices, and of faces if there are any."""
+    vertices, *others = counts
     array = np.asarray(as_numpy(value)) if not isinstance(value, str) else np.empty(0, str)
     if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in counts and len(array):
         return array.astype(np.float32) if array.dtype.kind == "b" else array
-    if array.dtype.kind in "biuf" and array.ndim == 1 and counts[0]:
-        of_faces = f", or {counts[1]}, one for each face" if len(counts) > 1 else ""
-        raise ArgumentError(f"scalars '{word}': expected {counts[0]} values, one for each vertex{of_faces}, got {len(array)}")
+    if array.dtype.kind in "biuf" and array.ndim == 1 and vertices:
+        of_faces = f", or {others[0]}, one for each face" if others else ""
+        raise ArgumentError(f"scalars '{word}': expected {vertices} values, one for each vertex{of_faces}, got {len(array)}")
     raise UnknownNameError(
         f"a mesh has no array '{word}'; a dict may hold {', '.join(NAMES)} (points, vertices, faces, normals, colors, ...), "
         f"{', '.join(_OTHERS)}, and scalars: arrays with a number for each vertex or face"
