@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -61,9 +62,10 @@ class TriangleJoiner {
     template <class A>
     bool has_one_value(const A& values, Eigen::Index begin, Eigen::Index end) const {
         if (values.empty() || element_of(mesh_, values.rows()) == PerElement::vertex) return true;
-        const auto* const first = values.data() + begin;
-        for (Eigen::Index i = 1; i < end - begin; ++i)
-            if (std::memcmp(first, first + i, sizeof *first) != 0) return false;
+        // NaN is a value, too.
+        const auto bits = [&](Eigen::Index i) { return std::bit_cast<uint32_t>(values.data()[i]); };
+        for (Eigen::Index i = begin + 1; i < end; ++i)
+            if (bits(i) != bits(begin)) return false;
         return true;
     }
 

@@ -16,7 +16,7 @@ class FacePolygons {
   public:
     explicit FacePolygons(const MeshData& mesh);
     /// The triangles alone.
-    explicit FacePolygons(Array3i F) : F_(std::move(F)) {}
+    explicit FacePolygons(const Array3i& F) : F_(F) {}
 
     size_t size() const { return face_.empty() ? size_t(F_.rows()) : face_.size(); }
     /// Where the corners of a polygon begin among those of all; for size(), their number.
