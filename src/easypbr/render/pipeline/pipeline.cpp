@@ -68,8 +68,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 
     const PixelRect drawn =
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
-    // Paths take longer than clearing new memory.
-    if (contents.paths) surfaces_.release();
+    if (contents.paths) surfaces_.release();  // paths take longer than clearing new memory
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
     const bool native = is_lit_natively(list, contents);
