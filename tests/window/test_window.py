@@ -169,7 +169,7 @@ def test_undo_takes_back_what_the_user_did_and_leaves_what_the_program_has_set(w
     view.scene.show(easypbr.shapes.box((1, 1, 1)), "box")
     window.settle()
     x0, y0, x1, y1 = window.state["places"]["Scene/visible ball"]
-    window.mouse("mousemove", (x0 + x1) // 2, (y0 + y1) // 2, "mousedown", 1, "mouseup", 1)
+    window.mouse("mousemove", int(x0 + x1) // 2, int(y0 + y1) // 2, "mousedown", 1, "mouseup", 1)
     window.update(5)
     assert ball.style.visible is False
     steps = iter(range(10**6))
