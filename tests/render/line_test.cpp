@@ -278,7 +278,7 @@ TEST(Lines, HideEachOther) {
     }
 }
 
-/// A square with a normal texture that leans all shading normals, components in [-1, 1].
+/// A square with a normal texture that turns all shading normals, components in [-1, 1].
 Mesh leaning_square(float half, const Vec3& normal) {
     Image normals(1, 1, 3, PixelType::u8);
     for (int c = 0; c < 3; ++c)
@@ -295,8 +295,8 @@ float most_green(const Image& image) {
     return most;
 }
 
-// What hides a line is where a surface is, not how its shading normal leans: here across the view, as if the
-// square were seen edge-on. The line is far from the square's borders, and nothing is lit.
+// What hides a line is where a surface is, not how its shading normal is turned: here across the view, as if
+// the square were seen edge-on. The line is far from the square's borders, and nothing is lit.
 TEST(Lines, AreHiddenWhateverTheShadingNormal) {
     const Vec3 normal(0.98f, 0, 0.2f);
     for (const bool native : {true, false}) {
