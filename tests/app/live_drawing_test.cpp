@@ -10,6 +10,7 @@
 #include "easypbr/app/vertex_edits.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/gl/context.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/settings.h"
 
@@ -76,6 +77,23 @@ TEST_F(LiveDrawingTest, EndsAtTheStillBitForBitAndThenDrawsNothing) {
     EXPECT_FALSE(step());
     const Image shown = live_.picture().image();
     EXPECT_TRUE(same(shown, still()));
+}
+
+TEST_F(LiveDrawingTest, NeedsNoDriverWhereTheCpuDraws) {
+    Session native(ball_scene());
+    native.use_device(DrawDevice::cpu);
+    native.settings().image.samples = 6;
+    LiveDrawing live(native);
+    const gl::ContextScope scope(native.context());
+    const auto settle_at = [&](Vec2d pointer) {
+        live.update({at(Kind::move, pointer)}, size, 0.02);
+        for (int i = 0; i < 100 && (live.update({}, size, 0.02) || live.is_busy()); ++i) continue;
+    };
+    settle_at(middle);
+    EXPECT_TRUE(same(live.picture().image(), native.render({size, 6})));
+    ASSERT_TRUE(live.picture().hovered());
+    EXPECT_EQ(live.picture().hovered()->object, "ball");
+    EXPECT_FALSE(gl::Context::has_driver());
 }
 
 TEST_F(LiveDrawingTest, ADragTurnsTheCameraAndUndoTurnsItBack) {

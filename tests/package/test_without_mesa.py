@@ -10,10 +10,11 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/easypbr"
-sys.path.insert(0, str(ROOT / "tests/cli"))
+sys.path += [str(ROOT / "tests/cli"), str(ROOT / "tests/remote")]
 
 import png  # noqa: E402
 import shapes  # noqa: E402
+from client import Client  # noqa: E402
 
 OPENGL = re.compile(r"lib(GL|EGL|OpenGL|GLX|GLdispatch|OSMesa|gbm|gallium)[._\w]*\.so")
 # Other users than root become root of a namespace of their own, for chroot.
@@ -44,14 +45,17 @@ def bare(tmp_path_factory):
         (root / folder).mkdir()
     shapes.write_sphere(root / "tmp/sphere.obj")
 
+    environment = {"PATH": os.environ["PATH"], "HOME": "/tmp"}
+
     def run(*arguments: str, code: int = 0) -> subprocess.CompletedProcess:
-        environment = {"PATH": os.environ["PATH"], "HOME": "/tmp"}
         done = subprocess.run([*CHROOT, root, PROGRAM, *arguments], env=environment, capture_output=True, text=True,
                               timeout=300, check=False)
         assert done.returncode == code, done.stdout + done.stderr
         return done
 
     run.root = root
+    run.start = lambda *arguments: subprocess.Popen([*CHROOT, root, PROGRAM, *arguments], env=environment,
+                                                    stdout=subprocess.PIPE, text=True)
     return run
 
 
@@ -86,6 +90,25 @@ def test_a_mesh_is_drawn(bare, samples):
     # The camera looks at the middle of the sphere: it covers the centre, the corners are empty.
     assert drawn[24, 32, 3] == 255 and drawn[24, 32, :3].max() > 30
     assert drawn[0, 0, 3] == drawn[-1, -1, 3] == 0
+
+
+def test_a_browser_view_is_drawn_turned_and_picked(bare, tmp_path):
+    with bare.start("serve", "/tmp/sphere.obj", "--set", "image.samples=4", "--set", "background.mode=transparent") as server:
+        try:
+            client = Client(re.search(r"http://\S+", server.stdout.readline())[0], size=(64, 48))
+            drawn = client.until_exact()
+            image = drawn.image(tmp_path)
+            assert image.shape[:2] == (48, 64) and image[24, 32, :3].max() > 30
+            client.drag((32, 24), (50, 24))
+            turned = client.until_exact(after=drawn.number, shows=client.inputs)
+            assert (turned.image(tmp_path)[24, 32] != image[24, 32]).any()
+            client.pointer("press", 32, 24)
+            client.pointer("release", 32, 24)
+            client.until_known("scene", lambda scene: scene["selected"] == "sphere")
+            assert not client.notices
+            client.close()
+        finally:
+            server.terminate()
 
 
 def test_the_device_gl_says_what_to_install(bare):

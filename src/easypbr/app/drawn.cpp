@@ -44,6 +44,10 @@ render::Renderer& Drawn::surface_renderer() const {
     return *device_->renderer;
 }
 
+bool Drawn::is_in_memory() const {
+    return tiled_ || picture_renderer().has_picture_in_memory();
+}
+
 Image Drawn::picture() const {
     if (tiled_) return finish_.apply(*tiled_);
     const render::Renderer& renderer = picture_renderer();

@@ -73,6 +73,8 @@ class Drawn {
     /// Pixels are those of texture(): nothing becomes of them when they are read.
     bool is_plain() const { return lens().is_identity() && !is_annotated() && !tiled_; }
 
+    /// Whether it is in host memory: picture() needs no driver.
+    bool is_in_memory() const;
     /// RGBA, row 0 on top.
     Image picture() const;
     /// The same, without waiting; `memory` is used again. What was drawn in tiles is there at once.

@@ -65,7 +65,7 @@ bool LivePicture::draw(const LiveShot& shot) {
 
 void LivePicture::forget_device() {
     device_ = session_.device_number();
-    texture_ = gl::Texture();
+    forget_image();
     shown_ = {};
     failure_.reset();
     frames_ = 0;
@@ -92,7 +92,7 @@ bool LivePicture::fail(const std::string& what, const LiveShot& shot, uint64_t v
     const bool is_new = std::exchange(last_error_, what) != what;
     failure_ = {version, shot.channel, shot.size, {}};
     // The last picture that there was stays, as long as there is something to show.
-    if (is_new && session_.scene().names().empty()) texture_ = gl::Texture();
+    if (is_new && session_.scene().names().empty()) forget_image();
     return is_new;
 }
 
@@ -164,18 +164,32 @@ void LivePicture::show_picture(const Drawn& drawn) {
     } else if (is_layer(shown_.channel)) {
         const auto layers = session_.render_layers({shown_.channel}, shown_.size);
         show_pixels(layer_picture(shown_.channel, layers.at(shown_.channel)));
-    } else if (!drawn.is_plain()) {
+    } else if (!drawn.is_plain() || drawn.is_in_memory()) {
         show_pixels(drawn.picture());
     } else {
         const gl::Texture& picture = drawn.texture();
         fit_texture(texture_, {picture.width(), picture.height()});
         gl::copy(picture, texture_);
+        pixels_ = Image();
     }
 }
 
-void LivePicture::show_pixels(const Image& image) {
-    fit_texture(texture_, {image.width(), image.height()});
-    texture_.upload(image.bytes());
+void LivePicture::show_pixels(Image image) {
+    pixels_ = std::move(image);
+    is_uploaded_ = false;
+}
+
+void LivePicture::forget_image() {
+    pixels_ = Image();
+    texture_ = gl::Texture();
+}
+
+const gl::Texture& LivePicture::texture() const {
+    if (!pixels_.empty() && !std::exchange(is_uploaded_, true)) {
+        fit_texture(texture_, {pixels_.width(), pixels_.height()});
+        texture_.upload(pixels_.bytes());
+    }
+    return texture_;
 }
 
 void LivePicture::show(const Image& image) {
@@ -186,7 +200,8 @@ void LivePicture::show(const Image& image) {
 }
 
 Image LivePicture::image() const {
-    if (!texture_) throw ArgumentError("nothing has been drawn yet");
+    if (!has_image()) throw ArgumentError("nothing has been drawn yet");
+    if (!pixels_.empty()) return pixels_;
     const gl::ContextScope scope(session_.context());
     if (device_ != session_.device_number()) throw gl::ContextLost("the picture was lost with its context");
     Image image(texture_.width(), texture_.height(), 4, PixelType::u8);

@@ -64,10 +64,13 @@ class LivePicture {
     bool has_failed() const { return failure_.has_value(); }
     const std::string& failure() const { return last_error_; }
 
+    /// Whether there is anything to show.
+    bool has_image() const { return !pixels_.empty() || texture_; }
     /// What is shown, stretched over the picture's place; empty before there is any. In the session's
-    /// context.
-    const gl::Texture& texture() const { return texture_; }
-    /// The same, read: RGBA u8, row 0 on top. Throws ArgumentError before there is any, gl::ContextLost.
+    /// context, which has to be current; pixels that are not there yet are uploaded.
+    const gl::Texture& texture() const;
+    /// The same, read: RGBA u8, row 0 on top; needs no driver where none draws. Throws ArgumentError before
+    /// there is any, gl::ContextLost.
     Image image() const;
     /// Shows another image, RGBA u8, until the next draw(); `draw()` then begins anew.
     void show(const Image& image);
@@ -103,11 +106,14 @@ class LivePicture {
     void draw_quickly(const LiveShot& shot, bool adapt);
     bool refine(const LiveShot& shot);
     void show_picture(const Drawn& drawn);
-    void show_pixels(const Image& image);
+    void show_pixels(Image image);
+    void forget_image();
     bool is_stale(const LiveShot& shot, uint64_t version) const;
 
     Session& session_;
-    gl::Texture texture_;
+    Image pixels_;                 ///< what is shown, where it is in host memory; else empty
+    mutable gl::Texture texture_;  ///< the same, or older than pixels_
+    mutable bool is_uploaded_ = false;
     uint64_t device_ = 0;  ///< that it is of, see Session::device_number()
     Key shown_;
     bool shows_other_ = false;

@@ -118,7 +118,7 @@ void View::draw(bool refines) {
 void View::send_picture(bool drew) {
     Own& own = *own_;
     const app::LivePicture& picture = own.live.picture();
-    if (picture.has_failed() || !picture.texture()) return;
+    if (picture.has_failed() || !picture.has_image()) return;
     if (drew && picture.statistics().frames <= 1) own.owes_still = true;
     own.has_news |= drew;
     if (is_moving() || own.live.navigation().is_moving()) {

@@ -82,6 +82,8 @@ class Renderer {
         return pipeline_.targets();
     }
 
+    /// Whether the picture is in host memory alone: read_picture() needs no driver.
+    bool has_picture_in_memory() const { return output_.is_finished_natively(); }
     /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
     Image read_picture() const;
     /// The first `width` x `height` pixels only: forces the picture to be finished.
