@@ -2,10 +2,6 @@
 // single frames.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <utility>
-
 #include "easypbr/core/image.h"
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/denoise/radiance_mean.h"
@@ -19,28 +15,7 @@ namespace easypbr::render {
 
 using easypbr::Encoding;
 
-/// An image behind everything, shown as it is: neither exposure nor tone curve apply to it.
-class BackgroundImage {
-  public:
-    /// `name`: for messages.
-    BackgroundImage(std::shared_ptr<const Image> image, std::string name)
-        : image_(std::move(image)), name_(std::move(name)) {}
-
-    const std::shared_ptr<const Image>& image() const { return image_; }
-    /// Linear light, premultiplied by alpha: halved as long as it has two texels for a pixel of a picture
-    /// that it covers, or a side longer than `most_side`.
-    const Target& light(const Vec2i& picture, int most_side);
-    /// Texture coordinates of that light by those of the image: halving leaves out odd lines at the end.
-    Vec2 uv_scale() const;
-
-  private:
-    int halvings(const Vec2i& picture, int most_side) const;
-
-    std::shared_ptr<const Image> image_;
-    std::string name_;
-    Target light_;
-    int halvings_ = 0;  ///< of light_
-};
+class BackgroundImage;
 
 /// A picture whose radiance is in host memory alone is finished there, natively; any other by the driver.
 class OutputPass {

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/image.h"
 #include "easypbr/gl/readback.h"
+#include "easypbr/render/output/background_image.h"
 #include "easypbr/render/pipeline/layers.h"
 #include "easypbr/render/pipeline/pipeline.h"
 #include "easypbr/render/pipeline/surface_frame.h"
