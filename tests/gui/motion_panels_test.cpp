@@ -2,99 +2,21 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/gui/live_view.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
-#include "easypbr/scene/settings.h"
+#include "gui/motion_panels.h"
 #include "scene/slide.h"
 
 namespace easypbr::gui::motion_panels_test {
 namespace {
 
 namespace fs = std::filesystem;
-using app::InputEvent;
-using Kind = InputEvent::Kind;
-
-const Vec2i size(560, 620);
-
-class MotionPanels : public testing::Test {
-  protected:
-    MotionPanels()
-        : session_(ball_scene()),
-          recorder_(session_, clock_),
-          player_(clock_),
-          view_(session_, recorder_, player_) {
-        folder_ = fs::temp_directory_path() / ("easypbr_motion_panels_" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-        session_.settings().image.samples = 2;
-        session_.settings().image.size = {48, 32};
-        for (const Panel panel : {Panel::scene, Panel::object, Panel::effects, Panel::lights,
-                                  Panel::environment, Panel::camera, Panel::channels, Panel::statistics})
-            view_.state().panels.is_open(panel) = false;
-    }
-    ~MotionPanels() override { fs::remove_all(folder_); }
-
-    static Scene ball_scene() {
-        Scene scene;
-        scene.show(make_sphere(1, 32), "ball");
-        return scene;
-    }
-    void step(const std::vector<InputEvent>& events = {}, double seconds = 0.05) {
-        view_.update(events, size, 1, seconds);
-    }
-    void settle() {
-        for (int i = 0; i < 100 && (view_.is_busy() || i < 3); ++i) step();
-    }
-    void unfold(Panel panel) {
-        view_.state().panels.unfold.insert(panel);
-        view_.touch();
-        settle();
-    }
-    void key(int code) {
-        InputEvent event;
-        event.kind = Kind::key_down;
-        event.key = code;
-        step({event});
-    }
-    void click(const std::string& name) {
-        const auto place = view_.places().find(name);
-        ASSERT_NE(place, view_.places().end()) << name;
-        InputEvent event;
-        event.position = place->second.center();
-        for (const Kind kind : {Kind::move, Kind::press, Kind::release}) {
-            event.kind = kind;
-            step({event});
-        }
-        step();
-        event.kind = Kind::move;
-        event.position = {540, 610};
-        step({event});
-    }
-    void look_from(const Vec3d& position) {
-        session_.set_view_point({Camera::look_at(position, Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
-    }
-    Vec3d position() { return session_.view_point(size).camera.position(); }
-    void three_keys() {
-        for (const Vec3d& place : {Vec3d(0, 1, 5), Vec3d(5, 1, 0), Vec3d(0, 1, -5)}) {
-            look_from(place);
-            key('K');
-        }
-    }
-
-    app::Session session_;
-    app::Clock clock_;
-    app::Recorder recorder_;
-    app::AnimationPlayer player_;
-    LiveView view_;
-    fs::path folder_;
-};
 
 TEST_F(MotionPanels, KeysArePlacedListedMovedAndRemoved) {
     unfold(Panel::camera_path);
@@ -394,107 +316,6 @@ TEST_F(MotionPanels, ARecordedPathKeepsItsShapeInTheWindow) {
     view_.stop_recording();
     settle();
     EXPECT_EQ(green_rows(), std::pair(0, size.y()));
-}
-
-/// The still of the view's size that comes after a picture of what `before` has done, which `after` undoes.
-Image still_after(app::Session& session, const std::function<void()>& before,
-                  const std::function<void()>& after) {
-    before();
-    session.render({size, 1});
-    after();
-    return session.render({size, session.settings().image.samples});
-}
-
-bool same(const Image& a, const Image& b) {
-    return std::ranges::equal(a.bytes(), b.bytes());
-}
-
-/// To one step of 8 bits: near planes that differ round depths differently.
-bool alike(const Image& a, const Image& b) {
-    return std::ranges::equal(a.bytes(), b.bytes(), [](std::byte x, std::byte y) {
-        return std::abs(std::to_integer<int>(x) - std::to_integer<int>(y)) <= 1;
-    });
-}
-
-// At rest the view shows what a recording's frame shows at this time: what happened since the frame before.
-TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
-    view_.state().panels.shown = false;
-    look_from({0, 1, 5});
-    AnimationNode node;
-    node.mesh = session_.scene().get("ball");
-    player_.add("ball", Animations({{node}, {}, {}, {slide("slide")}}));
-    session_.settings().motion_blur.enabled = true;
-    session_.settings().motion_blur.shutter = 1;
-    session_.settings().image.samples = 6;
-    view_.drawing().recording_form().fps = 2;  // A frame before the ball was a quarter of a unit to the left.
-    player_.play(0);
-    player_.pause();
-    player_.seek(2);
-    settle();
-    const Image shown = view_.drawing().picture().image();
-    const auto put = [&](double time) { return [this, time] { player_.seek(time); }; };
-    EXPECT_TRUE(same(shown, still_after(session_, put(1.5), put(2))));
-    const Image sharp = still_after(session_, put(2), put(2));
-    EXPECT_FALSE(same(shown, sharp));
-    // Twice as fast is twice as far.
-    player_.set_speed(2);
-    step();
-    settle();
-    EXPECT_TRUE(same(view_.drawing().picture().image(), still_after(session_, put(1), put(2))));
-    session_.settings().motion_blur.enabled = false;
-    settle();
-    const Image off = view_.drawing().picture().image();
-    EXPECT_TRUE(same(off, session_.render({size, 6})));
-}
-
-// The animation moves the first of two children that share a name.
-TEST_F(MotionPanels, OnlyTheSiblingThatMovesIsBlurred) {
-    view_.state().panels.shown = false;
-    look_from({0, 1, 5});
-    Mesh ball = session_.scene().get("ball"), twin = ball.clone(), parent;
-    twin.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 1, 0)));
-    session_.scene().remove("ball");
-    parent.add_child(ball);
-    parent.add_child(twin);
-    session_.scene().show(parent, "pair");
-    AnimationNode node;
-    node.mesh = ball;
-    player_.add("pair", Animations({{node}, {}, {}, {slide("slide")}}));
-    session_.settings().motion_blur.enabled = true;
-    session_.settings().image.samples = 4;
-    view_.drawing().recording_form().fps = 2;
-    player_.play(0);
-    player_.pause();
-    player_.seek(2);
-    settle();
-    const Image shown = view_.drawing().picture().image();
-    EXPECT_TRUE(same(shown, still_after(
-                                session_, [&] { player_.seek(1.5); }, [&] { player_.seek(2); })));
-}
-
-TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
-    session_.scene().show(make_box(), "ball");
-    three_keys();
-    session_.settings().motion_blur.enabled = true;
-    session_.settings().image.samples = 4;
-    // The cameras come by two ways, and differ in the last bit: so may courses of rays and texels of shadows.
-    session_.settings().path.enabled = false;
-    session_.settings().ground.mode = GroundMode::none;
-    const CameraPath path = *view_.drawing().path().editor.path();
-    view_.drawing().recording_form().fps = 4;
-    view_.drawing().path().editor.seek(0.7);
-    settle();
-    const Image shown = view_.drawing().picture().image();
-    const auto look = [&](double time) {
-        return [this, time, &path] { session_.set_camera(path.camera(time, session_.camera())); };
-    };
-    EXPECT_TRUE(alike(shown, still_after(session_, look(0.45), look(0.7))));
-    EXPECT_FALSE(alike(shown, still_after(session_, look(0.7), look(0.7))));
-    // Elsewhere it has not come along the path.
-    look_from({1, 1, 5});
-    settle();
-    const auto nothing = [] {};
-    EXPECT_TRUE(same(view_.drawing().picture().image(), still_after(session_, nothing, nothing)));
 }
 
 }  // namespace

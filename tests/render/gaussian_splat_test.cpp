@@ -1,60 +1,17 @@
-// 3D Gaussian splats: their projection, colour, order, and what hides them.
+// 3D Gaussian splats: their projection, colour and light.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
 #include <random>
 
 #include "easypbr/core/color.h"
 #include "easypbr/render/pipeline/tiles.h"
 #include "easypbr/scene/merge.h"
-#include "render_test.h"
+#include "single_splats.h"
 
 namespace easypbr::render::gaussian_splat_test {
 namespace {
 
-constexpr double distance = 4, fov_y_deg = 30;
-constexpr float code = 1.0f / 255;
-constexpr double constant = 0.28209479177387814;
-
-struct Splat {
-    Vec3d mean{0, 0, 0}, scales{0.1, 0.1, 0.1};
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-    double opacity = 0.8;
-    Eigen::Matrix<double, Eigen::Dynamic, 3> sh = Eigen::Matrix<double, 1, 3>::Zero();
-};
-
-Eigen::Matrix<double, 1, 3> sh_of(const Vec3d& color) {
-    return (color.transpose().array() - 0.5) / constant;
-}
-
-MeshData mesh_of(const std::vector<Splat>& splats) {
-    const auto n = Eigen::Index(splats.size());
-    Array3f::Dense V(n, 3), scales(n, 3);
-    Array4f::Dense rotations(n, 4);
-    Array1f::Dense opacities(n);
-    ArrayXf::Dense sh(n, splats.front().sh.size());
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Splat& s = splats[size_t(i)];
-        V.row(i) = s.mean.transpose().cast<float>();
-        scales.row(i) = s.scales.transpose().cast<float>();
-        rotations.row(i) << float(s.rotation.w()), float(s.rotation.x()), float(s.rotation.y()),
-            float(s.rotation.z());
-        opacities(i) = float(s.opacity);
-        for (Eigen::Index k = 0; k < s.sh.rows(); ++k)
-            for (Eigen::Index c = 0; c < 3; ++c) sh(i, 3 * k + c) = float(s.sh(k, c));
-    }
-    MeshData mesh;
-    mesh.V = std::move(V);
-    mesh.splats = {std::move(scales), std::move(rotations), std::move(opacities), std::move(sh)};
-    return mesh;
-}
-
-app::Session session_of(const Scene& scene, int size) {
-    app::Session session = plain_session(scene, size);
-    look_from(session, Vec3d(0, 0, distance), float(fov_y_deg));
-    return session;
-}
+using namespace single_splats;
 
 /// sRGB-encoded colour, premultiplied, as splats are composed.
 Eigen::Vector4d encoded(const float* light) {
@@ -245,182 +202,6 @@ TEST(GaussianSplats, FollowTheirPose) {
     // the least opacity that is seen: 1/255.
     for (size_t i = 0; i < a.pixels<float>().size(); ++i)
         ASSERT_NEAR(a.pixels<float>()[i], b.pixels<float>()[i], 1.5f * code) << i;
-}
-
-/// One wide splat whose opacity in the middle of the picture is known.
-Splat wide_splat(double z) {
-    Splat splat;
-    splat.mean = Vec3d(0, 0, z);
-    splat.scales = Vec3d(5, 5, 0.01);
-    splat.opacity = 0.75;
-    splat.sh = sh_of(Vec3d(1, 0, 0));
-    return splat;
-}
-
-Mesh unlit_square(const Vec3& color, float opacity = 1) {
-    Material material;
-    material.unlit = true;
-    material.emissive = Vec3::Zero();
-    material.base_color = color;
-    material.opacity = opacity;
-    if (opacity < 1) material.alpha_mode = AlphaMode::blend;
-    return facing_square(0.5f, material);
-}
-
-Eigen::Vector4f middle_of(const Scene& scene, bool native = true, int samples = 1) {
-    app::Session session = session_of(scene, 32);
-    session.allow_native_geometry(native);
-    session.allow_native_shading(native);
-    const Image image = render_linear(session, samples);
-    return Eigen::Map<const Eigen::Vector4f>(image.at<float>(16, 16));
-}
-
-TEST(GaussianSplats, AreHiddenBySurfacesBeforeThem) {
-    for (const bool native : {true, false})
-        for (const int samples : {1, 4}) {
-            Scene scene;
-            scene.show(unlit_square(Vec3(0, 1, 0)), "square");
-            scene.show(Mesh(mesh_of({wide_splat(-0.5)})), "splat");
-            EXPECT_LT((middle_of(scene, native, samples) - Eigen::Vector4f(0, 1, 0, 1)).norm(), 1e-3f);
-        }
-}
-
-// Surfaces behind show by what splats let through, 1/4.
-TEST(GaussianSplats, LetSurfacesBehindThrough) {
-    for (const bool native : {true, false})
-        for (const int samples : {1, 4}) {
-            Scene scene;
-            scene.show(unlit_square(Vec3(0, 1, 0)), "square");
-            scene.show(Mesh(mesh_of({wide_splat(0.5)})), "splat");
-            // The middle is half a pixel beside the splat's, which is hundreds of pixels wide.
-            EXPECT_LT((middle_of(scene, native, samples) - Eigen::Vector4f(0.75f, 0.25f, 0, 1)).norm(), 2e-3f)
-                << native << samples;
-        }
-}
-
-// A half-opaque square between two splats: red, then green over it, then red.
-TEST(GaussianSplats, AreBeforeAndBehindLayers) {
-    Scene scene;
-    scene.show(unlit_square(Vec3(0, 1, 0), 0.5f), "square");
-    scene.show(Mesh(mesh_of({wide_splat(0.5), wide_splat(-0.5)})), "splats");
-    const float behind = 0.75f * 0.5f, red = 0.75f + 0.25f * behind, green = 0.25f * 0.5f;
-    EXPECT_LT((middle_of(scene) - Eigen::Vector4f(red, green, 0, red + green)).norm(), 4e-3f);
-}
-
-/// A splat that is thick along the view, `deviations` standard deviations before the plane z = 0.
-Splat thick_splat(double deviations, double thickness) {
-    Splat splat = wide_splat(deviations * thickness);
-    splat.scales.z() = thickness;
-    return splat;
-}
-
-double normal_cdf(double deviations) {
-    return 0.5 * std::erfc(-deviations / std::sqrt(2.0));
-}
-
-// A surface hides the part of a splat's density along the ray that is behind it: of a medium that lets 1/4
-// through, the part p before the surface lets 4^-p through.
-TEST(GaussianSplats, AreCutBySurfaces) {
-    for (const bool native : {true, false})
-        for (const bool resort : {false, true})
-            for (const double deviations : {-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0}) {
-                Scene scene;
-                scene.show(unlit_square(Vec3(0, 1, 0)), "square");
-                const double thickness = resort ? 0.02 : 0.5;
-                scene.show(Mesh(mesh_of({thick_splat(deviations, thickness)})), "splat");
-                const double through = std::pow(0.25, normal_cdf(deviations));
-                for (const bool soft : {true, false}) {
-                    app::Session session = session_of(scene, 32);
-                    session.settings().splats.resort = resort;
-                    session.settings().splats.soft = soft;
-                    session.allow_native_geometry(native);
-                    session.allow_native_shading(native);
-                    const Image image = render_linear(session);
-                    // Without soft cuts all of it is seen, or nothing; in its middle that is a rounding.
-                    const double green = soft ? through : deviations > 0 ? 0.25 : 1;
-                    if (!soft && deviations == 0) continue;
-                    EXPECT_NEAR(image.at<float>(16, 16)[1], green, code)
-                        << native << resort << soft << deviations;
-                    EXPECT_NEAR(image.at<float>(16, 16)[0], 1 - green, code) << native << resort << soft;
-                }
-            }
-}
-
-// Half of a splat is before a half-transparent square, and half behind it: both let sqrt(1/4) through.
-TEST(GaussianSplats, AreCutByLayers) {
-    Scene scene;
-    scene.show(unlit_square(Vec3(0, 1, 0), 0.5f), "square");
-    scene.show(Mesh(mesh_of({thick_splat(0, 0.02)})), "splat");
-    const float red = 0.5f + 0.5f * 0.5f * 0.5f, green = 0.5f * 0.5f;
-    EXPECT_LT((middle_of(scene) - Eigen::Vector4f(red, green, 0, red + green)).norm(), 4e-3f);
-}
-
-/// A horizontal line through the picture's middle in the plane z.
-Mesh blue_line(float z, float width) {
-    Array3f::Dense V(2, 3);
-    V << -2, 0, z, 2, 0, z;
-    Array2i::Dense E(1, 2);
-    E << 0, 1;
-    MeshData data;
-    data.V = std::move(V);
-    data.E = std::move(E);
-    data.style.line_color = Vec3(0, 0, 1);
-    data.style.line_width = width;
-    return Mesh(std::move(data));
-}
-
-// A line covers the splat behind it, and the splat before it covers a part of the line: red of 0.75.
-TEST(GaussianSplats, AreBehindAndBeforeLines) {
-    for (const bool native : {true, false})
-        for (const float width : {1.0f, 9.0f})
-            for (const float z : {-1.0f, 0.0f, 1.0f}) {
-                Scene scene;
-                scene.show(blue_line(z, width), "line");
-                scene.show(Mesh(mesh_of({wide_splat(0.5), wide_splat(-0.5)})), "splats");
-                const double before = z > 0.5f ? 0 : z > -0.5f ? 1 : 2;
-                app::Session session = session_of(scene, 49);
-                session.allow_native_geometry(native);
-                session.allow_native_shading(native);
-                const Image image = render_linear(session);
-                const float* middle = image.at<float>(24, 24);
-                const double blue = std::pow(0.25, before);
-                EXPECT_NEAR(middle[2], blue, 4e-3) << native << width << z;
-                EXPECT_NEAR(middle[0], 1 - blue, 4e-3) << native << width << z;
-                // Beside the line, and where it covers a part of a pixel, are no seams: a sixteenth comes
-                // through both splats, and at the rim, 0.2 standard deviations from their middles, a
-                // fourteenth.
-                for (int y = 0; y < 49; ++y)
-                    EXPECT_GE(image.at<float>(24, y)[3], 1 - 1 / 13.5) << native << width << z << y;
-            }
-}
-
-// Of the splats before and behind a line some are behind a half-opaque square too.
-TEST(GaussianSplats, AreInOrderWithLinesAndLayers) {
-    for (const float z : {-1.0f, -0.25f, 0.25f, 1.0f}) {
-        Scene scene;
-        scene.show(unlit_square(Vec3(0, 1, 0), 0.5f), "square");
-        scene.show(blue_line(z, 9), "line");
-        scene.show(Mesh(mesh_of({wide_splat(0.5), wide_splat(-0.5)})), "splats");
-        // From the back: red, green, red, and blue in its place.
-        std::vector<std::pair<float, Eigen::Vector4f>> parts{{-0.5f, {0.75f, 0, 0, 0.75f}},
-                                                             {0.0f, {0, 0.5f, 0, 0.5f}},
-                                                             {0.5f, {0.75f, 0, 0, 0.75f}},
-                                                             {z, {0, 0, 1, 1}}};
-        std::ranges::sort(parts, {}, &std::pair<float, Eigen::Vector4f>::first);
-        Eigen::Vector4f expected = Eigen::Vector4f::Zero();
-        for (const auto& [place, part] : parts) expected = part + (1 - part.w()) * expected;
-        EXPECT_LT((middle_of(scene) - expected).norm(), 6e-3f) << z;
-    }
-}
-
-TEST(GaussianSplats, AreDrawnOverEverythingWhereAsked) {
-    Mesh splat(mesh_of({wide_splat(-0.5)}));
-    splat.edit([](MeshData& data) { data.style.overlay = true; });
-    Scene scene;
-    scene.show(unlit_square(Vec3(0, 1, 0)), "square");
-    scene.show(splat, "splat");
-    for (const bool native : {true, false})
-        EXPECT_LT((middle_of(scene, native) - Eigen::Vector4f(0.75f, 0.25f, 0, 1)).norm(), 2e-3f);
 }
 
 TEST(GaussianSplats, AreTheSameNativelyAndThroughTheDriver) {

@@ -1,0 +1,375 @@
+// What OBJ and PLY keep of materials and textures, and the image files that they write.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "file_limit.h"
+#include "io/random_mesh.h"
+#include "io/temporary_folder.h"
+
+namespace easypbr::mesh_material_files_test {
+
+namespace {
+
+/// An image of one colour.
+std::shared_ptr<const Image> flat(uint8_t value) {
+    auto image = std::make_shared<Image>(2, 2, 3, PixelType::u8);
+    std::ranges::fill(image->pixels<uint8_t>(), value);
+    return image;
+}
+
+/// A square whose texture coordinates are its corners.
+MeshData textured_square(const fs::path& image) {
+    MeshData mesh;
+    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {0, 2, 3}});
+    mesh.UV = Array2f(Array2f::Dense{{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    mesh.materials.resize(1);
+    mesh.materials[0].base_color_texture.image = flat(1);
+    mesh.materials[0].base_color_texture.path = image.string();
+    return mesh;
+}
+
+/// What is said while a mesh is written.
+std::string warnings_of(const MeshData& mesh, const fs::path& path) {
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    Mesh(mesh).save(path);
+    set_log_sink({});
+    return warnings;
+}
+
+Vec2 uv_in_image(const MeshData& mesh, int row) {
+    const Mat3& M = mesh.materials.at(0).base_color_texture.uv_transform;
+    return (M * Vec3(mesh.UV(row, 0), mesh.UV(row, 1), 1)).head<2>();
+}
+
+}  // namespace
+
+TEST(MeshMaterialFiles, ObjAndItsMaterialsAreWrittenTogetherOrNotAtAll) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl", std::string_view("newmtl old\n"));
+    MeshData mesh = random_mesh(7, 300);
+    mesh.materials = {Material{}};
+    {
+        // There is room for the materials, about 150 bytes, only.
+        const FileLimit full(1000);
+        EXPECT_THROW(Mesh(mesh).save(folder / "m.obj"), FileError);
+    }
+    EXPECT_EQ(FileBytes(folder / "m.mtl").text(), "newmtl old\n");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_NE(FileBytes(folder / "m.mtl").text(), "newmtl old\n");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
+}
+
+TEST(MeshMaterialFiles, ObjKeepsMaterialsAndParts) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "t.png");
+    MeshData mesh = random_mesh(3, 10);
+    Material paint;
+    paint.name = "paint";
+    paint.base_color = Vec3(0.1f, 0.2f, 0.3f);
+    paint.roughness = 0.123f;
+    paint.metallic = 1;
+    paint.normal_scale = 0.5f;
+    paint.base_color_texture.image = std::make_shared<const Image>(2, 2, 3, PixelType::u8);
+    paint.base_color_texture.path = (folder / "t.png").string();
+    paint.normal_texture = paint.base_color_texture;
+    mesh.materials = {Material(), paint};
+    mesh.parts = {{"a", 0, 5, 0}, {"b", 5, 15, 1}};
+    Mesh(mesh).save(folder / "out/m.obj");
+    const auto back = Mesh(folder / "out/m.obj").snapshot();
+    ASSERT_EQ(back->materials.size(), 2u);
+    const Material& read = back->materials[1];
+    EXPECT_EQ(read.name, "paint");
+    EXPECT_EQ(read.base_color, paint.base_color);
+    EXPECT_EQ(read.roughness, paint.roughness);
+    EXPECT_EQ(read.metallic, paint.metallic);
+    EXPECT_EQ(read.normal_scale, paint.normal_scale);
+    EXPECT_TRUE(read.base_color_texture);
+    ASSERT_EQ(back->parts.size(), 2u);
+    EXPECT_EQ(back->parts[1].first_face, 5);
+    EXPECT_TRUE(same_bits(mesh.F, back->F));
+}
+
+TEST(MeshMaterialFiles, ObjWritesImagesThatNoFileHolds) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    Material red, other;
+    red.name = "red";
+    red.base_color_texture.image = flat(10);
+    red.emissive_texture.image = red.base_color_texture.image;
+    red.roughness_texture.image = flat(20);
+    red.roughness_texture.channel = 1;
+    other.name = "other";
+    other.base_color_texture.image = flat(30);
+    // A file that is there keeps its name, and its content.
+    io::save_image(*flat(40), folder / "my_m_normal.png");
+    other.normal_texture.image = flat(40);
+    other.normal_texture.path = (folder / "my_m_normal.png").string();
+    red.normal_texture.image = flat(50);
+    mesh.materials = {red, other};
+    mesh.parts = {{"a", 0, 5, 0}, {"b", 5, 15, 1}};
+    Mesh(mesh).save(folder / "my m.obj");
+    // OBJ, MTL, the normal map that was there, and four images: one of them is used twice.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 7);
+    const auto back = Mesh(folder / "my m.obj").snapshot();
+    ASSERT_EQ(back->materials.size(), 2u);
+    const auto value_of = [](const Texture& texture) {
+        return texture ? int(texture.image->at<uint8_t>(1, 1)[0]) : -1;
+    };
+    EXPECT_EQ(value_of(back->materials[0].base_color_texture), 10);
+    EXPECT_EQ(value_of(back->materials[0].emissive_texture), 10);
+    EXPECT_EQ(value_of(back->materials[0].roughness_texture), 20);
+    EXPECT_EQ(back->materials[0].roughness_texture.channel, 1);
+    EXPECT_EQ(value_of(back->materials[0].normal_texture), 50);
+    EXPECT_EQ(value_of(back->materials[1].base_color_texture), 30);
+    EXPECT_EQ(value_of(back->materials[1].normal_texture), 40);
+    EXPECT_TRUE(fs::exists(folder / "my_m_base_color.png"));
+}
+
+TEST(MeshMaterialFiles, ObjImagesReplaceNoneOfOtherFiles) {
+    const TemporaryFolder folder;
+    const auto save = [&](const char* name, uint8_t value) {
+        MeshData mesh = random_mesh(3, 10);
+        mesh.materials.resize(1);
+        mesh.materials[0].base_color_texture.image = flat(value);
+        Mesh(mesh).save(folder / name);
+    };
+    const auto value_of = [&](const char* name) {
+        const Texture texture = Mesh(folder / name).snapshot()->materials.at(0).base_color_texture;
+        return texture ? int(texture.image->at<uint8_t>(1, 1)[0]) : -1;
+    };
+    save("car 1.obj", 10);
+    save("car_1.obj", 20);
+    EXPECT_EQ(value_of("car 1.obj"), 10);
+    EXPECT_EQ(value_of("car_1.obj"), 20);
+    // Saved again, each replaces its own.
+    save("car_1.obj", 30);
+    save("car 1.obj", 40);
+    EXPECT_EQ(value_of("car 1.obj"), 40);
+    EXPECT_EQ(value_of("car_1.obj"), 30);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 6);
+    // What lines of MTL take for something else is replaced in the images' names; image files with such names
+    // are found.
+    for (const char* name : {"a\\b.obj", "-n.obj", " lead.obj", "a #1.obj"}) {
+        save(name, 50);
+        EXPECT_EQ(value_of(name), 50) << name;
+    }
+    io::save_image(*flat(60), folder / "c\\d.png");
+    MeshData mesh = random_mesh(3, 10);
+    mesh.materials.resize(1);
+    mesh.materials[0].base_color_texture.path = (folder / "c\\d.png").string();
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_EQ(value_of("m.obj"), 60);
+}
+
+TEST(MeshMaterialFiles, ObjRefusesNamesThatNoLineHolds) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    Mesh(mesh).save(folder / "a\nb.obj");
+    fs::remove(folder / "a\nb.obj");
+    mesh.materials.resize(1);
+    EXPECT_THROW(Mesh(mesh).save(folder / "a\nb.obj"), ArgumentError);
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(MeshMaterialFiles, ObjWritesMaterialsThatAreTheSameOnce) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    Material red;
+    red.name = "red";
+    Material other = red, unnamed;
+    other.roughness = 0.25f;
+    mesh.materials = {red, red, other, unnamed};
+    mesh.parts = {{"a", 0, 5, 0}, {"b", 5, 5, 1}, {"c", 10, 5, 2}, {"d", 15, 5, 3}};
+    Mesh(mesh).save(folder / "m.obj");
+    const auto back = Mesh(folder / "m.obj").snapshot();
+    ASSERT_EQ(back->materials.size(), 3u);
+    EXPECT_EQ(back->materials[0].name, "red");
+    EXPECT_EQ(back->parts[0].face_count, 10);
+    EXPECT_EQ(back->materials[1].name, "red_2");
+    EXPECT_EQ(back->materials[1].roughness, 0.25f);
+    EXPECT_EQ(back->materials[2].name, "material");
+}
+
+TEST(MeshMaterialFiles, ObjImagesAppearWithItOrNotAtAll) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(7, 300);
+    mesh.materials.resize(1);
+    mesh.materials[0].base_color_texture.image = flat(1);
+    {
+        // There is room for image and materials, not for the geometry.
+        const FileLimit full(1000);
+        EXPECT_THROW(Mesh(mesh).save(folder / "m.obj"), FileError);
+    }
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(MeshMaterialFiles, PlySaysWhichTexturesItLeavesOut) {
+    const TemporaryFolder folder;
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    MeshData mesh = random_mesh(3, 10);
+    mesh.materials.resize(1);
+    Mesh(mesh).save(folder / "m.ply");
+    EXPECT_EQ(warnings, "");
+    mesh.materials[0].base_color_texture.image = flat(1);
+    Mesh(mesh).save(folder / "m.ply");
+    set_log_sink({});
+    EXPECT_NE(warnings.find("no place for material.base_color_texture: left out"), std::string::npos)
+        << warnings;
+}
+
+TEST(MeshMaterialFiles, TextureTransformsBecomePartOfTheTextureCoordinates) {
+    const TemporaryFolder folder;
+    io::save_image(*flat(1), folder / "t.png");
+    MeshData mesh = textured_square(folder / "t.png");
+    Mat3 turned, scaled;
+    turned << 0, -2, 0.5f, 2, 0, 0.25f, 0, 0, 1;
+    scaled << 2, 0, 0.5f, 0, 3, 0.25f, 0, 0, 1;
+    for (const Mat3& M : {turned, scaled})
+        for (const char* name : {"m.obj", "m.ply"}) {
+            mesh.materials[0].base_color_texture.uv_transform = M;
+            EXPECT_EQ(warnings_of(mesh, folder / name), "");
+            const auto back = Mesh(folder / name).snapshot();
+            // All numbers are quarters, which floats hold.
+            for (int i = 0; i < 4; ++i) EXPECT_EQ(uv_in_image(*back, i), uv_in_image(mesh, i)) << name << i;
+        }
+}
+
+TEST(MeshMaterialFiles, TextureTransformsThatDifferAreLeftOutWithAWarning) {
+    const TemporaryFolder folder;
+    io::save_image(*flat(1), folder / "t.png");
+    MeshData mesh = textured_square(folder / "t.png");
+    mesh.materials[0].roughness_texture = mesh.materials[0].base_color_texture;
+    mesh.materials[0].base_color_texture.uv_transform << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    EXPECT_NE(warnings_of(mesh, folder / "m.obj").find("no place for texture transforms: left out"),
+              std::string::npos);
+    EXPECT_EQ(Array2f::Dense(Mesh(folder / "m.obj").UV()), Array2f::Dense(mesh.UV));
+    // The same where two materials share vertices.
+    mesh.materials[0].roughness_texture = {};
+    mesh.materials.resize(2);
+    mesh.parts = {{"a", 0, 1, 0}, {"b", 1, 1, 1}};
+    EXPECT_NE(warnings_of(mesh, folder / "m.obj").find("texture transforms"), std::string::npos);
+    // With vertices of its own each part has its own coordinates.
+    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    mesh.UV = Array2f(Array2f::Dense{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}});
+    mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {3, 4, 5}});
+    EXPECT_EQ(warnings_of(mesh, folder / "m.obj"), "");
+    EXPECT_EQ(Array2f::Dense(Mesh(folder / "m.obj").UV()),
+              (Array2f::Dense{{0, 0}, {0, 1}, {-1, 1}, {0, 0}, {1, 1}, {0, 1}}));
+}
+
+TEST(MeshMaterialFiles, WrapsWithoutAPlaceAreNamedWhereCoordinatesLeaveTheImage) {
+    const TemporaryFolder folder;
+    io::save_image(*flat(1), folder / "t.png");
+    MeshData mesh = textured_square(folder / "t.png");
+    Texture& texture = mesh.materials[0].base_color_texture;
+    const auto is_named = [&](const char* name, Wrap u, Wrap v) {
+        texture.wrap_u = u, texture.wrap_v = v;
+        return warnings_of(mesh, folder / name).find("no place for wraps of textures") != std::string::npos;
+    };
+    EXPECT_FALSE(is_named("m.obj", Wrap::mirror, Wrap::mirror)) << "all is within the image";
+    texture.uv_transform.diagonal() << 2, 2, 1;
+    EXPECT_TRUE(is_named("m.obj", Wrap::mirror, Wrap::mirror));
+    EXPECT_TRUE(is_named("m.obj", Wrap::clamp, Wrap::repeat));
+    EXPECT_EQ(Mesh(folder / "m.obj").snapshot()->materials.at(0).base_color_texture.wrap_u, Wrap::repeat);
+    EXPECT_FALSE(is_named("m.obj", Wrap::clamp, Wrap::clamp));
+    EXPECT_EQ(Mesh(folder / "m.obj").snapshot()->materials.at(0).base_color_texture.wrap_v, Wrap::clamp);
+    EXPECT_FALSE(is_named("m.obj", Wrap::repeat, Wrap::repeat));
+    EXPECT_TRUE(is_named("m.ply", Wrap::clamp, Wrap::clamp));
+    EXPECT_FALSE(is_named("m.ply", Wrap::repeat, Wrap::repeat));
+}
+
+TEST(MeshMaterialFiles, PlyRefersToItsTexture) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "t.png");
+    MeshData mesh = random_mesh(3, 10);
+    mesh.materials.emplace_back();
+    mesh.materials[0].base_color_texture.path = (folder / "t.png").string();
+    Mesh(mesh).save(folder / "out/m.ply");
+    const auto back = Mesh(folder / "out/m.ply").snapshot();
+    ASSERT_EQ(back->materials.size(), 1u);
+    EXPECT_TRUE(back->materials[0].base_color_texture);
+}
+
+TEST(MeshMaterialFiles, ObjColorsAreWrittenBesideWhite) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(7, 30);
+    mesh.C = ArrayXf::Dense::Constant(mesh.V.rows(), 3, 0.5f);
+    mesh.materials.resize(1);
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_EQ(Mesh(folder / "m.obj").snapshot()->materials.at(0).base_color, Vec3(1, 1, 1));
+}
+
+TEST(MeshMaterialFiles, ColorsOfMaterialsBecomeThoseOfVertices) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    mesh.F = Array3i::Dense{{0, 1, 2}, {3, 4, 5}};
+    mesh.materials.resize(2);
+    mesh.materials[0].base_color = Vec3(1, 0, 0);
+    mesh.materials[1].base_color = Vec3(0, 0, 1);
+    mesh.materials[1].opacity = 0.5f;
+    mesh.materials[1].clearcoat = 1;
+    mesh.parts = {{"red", 0, 1, 0}, {"blue", 1, 1, 1}};
+    for (const char* name : {"m.ply", "m.npz"}) {
+        std::string warnings;
+        set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+        Mesh(mesh).save(folder / name);
+        set_log_sink({});
+        EXPECT_NE(warnings.find("no place for material.clearcoat: left out"), std::string::npos) << warnings;
+        const auto back = Mesh(folder / name).snapshot();
+        ASSERT_EQ(back->C.cols(), 4) << name;
+        // The curve of sRGB takes 1 to 1 within the rounding of its power.
+        EXPECT_LE((Eigen::Vector4f(back->C.row(0)) - Eigen::Vector4f(1, 0, 0, 1)).norm(), 1e-6f) << name;
+        // An opacity of 0.5 is 128 of 255 in PLY.
+        EXPECT_LE((Eigen::Vector4f(back->C.row(5)) - Eigen::Vector4f(0, 0, 1, 0.5f)).norm(),
+                  0.5f / 255 + 1e-6f)
+            << name;
+    }
+    // Vertex 2 would have both colours.
+    mesh.F = Array3i::Dense{{0, 1, 2}, {2, 4, 5}};
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    Mesh(mesh).save(folder / "m.ply");
+    set_log_sink({});
+    for (const char* name : {"material.base_color", "material.opacity", "material.clearcoat"})
+        EXPECT_NE(warnings.find(name), std::string::npos) << warnings;
+    EXPECT_TRUE(Mesh(folder / "m.ply").snapshot()->C.empty());
+}
+
+TEST(MeshMaterialFiles, ObjNamesWhatMaterialsLose) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.F = Array3i::Dense{{0, 1, 2}};
+    mesh.materials.resize(1);
+    mesh.materials[0].metallic = 1;
+    mesh.materials[0].emissive = Vec3(1, 2, 3);
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_EQ(warnings, "");
+    mesh.materials[0].transmission = 1;
+    mesh.materials[0].alpha_mode = AlphaMode::blend;
+    mesh.materials[0].occlusion_texture.image = flat(1);
+    Mesh(mesh).save(folder / "m.obj");
+    set_log_sink({});
+    EXPECT_NE(
+        warnings.find("material.transmission, material.occlusion_texture, material.alpha_mode: left out"),
+        std::string::npos)
+        << warnings;
+}
+
+}  // namespace easypbr::mesh_material_files_test
