@@ -1,5 +1,9 @@
 // What is written for clouds comes back as it was.
-#include <cstring>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -7,6 +11,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "io/same_bits.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::cloud_writers_test {
@@ -28,16 +33,6 @@ MeshData cloud(int n) {
     mesh.I = Array1f::Dense::NullaryExpr(n, [&](auto i) { return 100 + wave(int(i)); });
     mesh.scalars = {{"heat", mesh.I}, {"point error", mesh.B}};
     return mesh;
-}
-
-template <class A>
-::testing::AssertionResult same_bits(const A& a, const A& b) {
-    if (a.rows() != b.rows() || a.cols() != b.cols())
-        return ::testing::AssertionFailure()
-               << a.rows() << " x " << a.cols() << " and " << b.rows() << " x " << b.cols();
-    if (std::memcmp(a.data(), b.data(), size_t(a.size()) * sizeof(*a.data())) != 0)
-        return ::testing::AssertionFailure() << "values differ";
-    return ::testing::AssertionSuccess();
 }
 
 void expect_same(const MeshData& mesh, const MeshData& back, const std::string& name) {

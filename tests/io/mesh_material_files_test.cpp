@@ -11,6 +11,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "file_limit.h"
 #include "io/random_mesh.h"
+#include "io/same_bits.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::mesh_material_files_test {

@@ -8,6 +8,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "io/random_mesh.h"
+#include "io/same_bits.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::mesh_roundtrip_test {

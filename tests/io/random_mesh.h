@@ -1,7 +1,5 @@
-// A mesh of random values, for tests of the files that hold it to the bit.
+// A mesh of random values, for tests of the files that hold it.
 #pragma once
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
@@ -10,14 +8,6 @@
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
-
-template <class A, class B>
-::testing::AssertionResult same_bits(const A& a, const B& b) {
-    if (a.rows() != b.rows() || a.cols() != b.cols()) return ::testing::AssertionFailure() << "shapes differ";
-    if (a.size() && std::memcmp(a.data(), b.data(), size_t(a.size()) * sizeof(*a.data())) != 0)
-        return ::testing::AssertionFailure() << "values differ";
-    return ::testing::AssertionSuccess();
-}
 
 /// A mesh with every array that PLY holds, of random values.
 inline MeshData random_mesh(unsigned seed, int n) {
