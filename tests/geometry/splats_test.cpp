@@ -162,8 +162,10 @@ TEST(SplatTools, SayWhatIsWrong) {
     EXPECT_TRUE(has(message_of([&] { surfels_from_splats(box); }), "mesh with splats"));
     EXPECT_TRUE(has(message_of([&] { prune_splats(splats, {.least_opacity = 2}); }), "nothing stays"));
     EXPECT_TRUE(has(message_of([&] { prune_splats(splats, {.least_size = std::nan("")}); }), "numbers"));
-    EXPECT_TRUE(has(message_of([&] { crop_sphere(splats, Vec3d(0, 0, 0), 0); }), "radius"));
-    EXPECT_TRUE(has(message_of([&] { crop_box(splats, Box3d(Vec3d(1, 0, 0), Vec3d(0, 1, 1))); }), "corner"));
+    EXPECT_TRUE(has(message_of([&] { crop_sphere(splats, Vec3d(0, 0, 0), 0); }),
+                    "crop_sphere: expected a finite centre and a radius > 0, got 0,0,0,0"));
+    EXPECT_TRUE(has(message_of([&] { crop_box(splats, Box3d(Vec3d(1, 0, 0), Vec3d(0, 1, 1))); }),
+                    "lowest corner is below its highest, got 1,0,0,0,1,1"));
     EXPECT_TRUE(
         has(message_of([&] { crop_box(splats, Box3d(Vec3d(8, 0, 0), Vec3d(9, 1, 1))); }), "nothing stays"));
 }

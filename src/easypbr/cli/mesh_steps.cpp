@@ -1,13 +1,11 @@
 #include "easypbr/cli/mesh_steps.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "easypbr/core/error.h"
@@ -25,15 +23,6 @@ namespace {
 template <class Number>
 using Check = void (*)(const char* option, Number value);
 
-void positive(const char* option, double value) {
-    geometry::require_positive(option, value);
-}
-
-void not_negative(const char* option, double value) {
-    if (!(value >= 0) || !std::isfinite(value))
-        throw ArgumentError(fmt::format("{}: expected a number >= 0, got {}", option, value));
-}
-
 void a_number(const char* option, double value) {
     if (std::isnan(value)) throw ArgumentError(fmt::format("{}: expected a number, got nan", option));
 }
@@ -49,9 +38,9 @@ void at_least(const char* option, Number value) {
         throw ArgumentError(fmt::format("{}: expected a whole number >= {}, got {}", option, least, value));
 }
 
-template <class Number, int64_t least, int64_t most>
-void check_range(const char* option, Number value) {
-    geometry::require_between(option, value, least, most);
+template <class Number, geometry::Range range>
+void in_range(const char* option, Number value) {
+    geometry::require_in(option, value, range);
 }
 
 /// Adds options that append steps.
@@ -129,14 +118,14 @@ void declare_places(StepOptions& steps) {
                              return transformed(mesh, Eigen::Affine3d(Eigen::Scaling(factor)));
                          });
     steps.number<double>("--normalize-size", "X", "Scale until the longest side of the bounding box is X",
-                         positive, with_size);
+                         geometry::require_positive<double>, with_size);
 }
 
 void declare_repairs(StepOptions& steps) {
     steps.number<double>(
         "--weld", "DISTANCE",
-        "Merge vertices within this distance that have the same attributes; 0: equal positions", not_negative,
-        [](const Mesh& mesh, double tolerance) {
+        "Merge vertices within this distance that have the same attributes; 0: equal positions",
+        geometry::require_not_negative, [](const Mesh& mesh, double tolerance) {
             return remove_duplicate_vertices(mesh, {tolerance, true});
         });
     steps.flag("--clean", "Remove degenerate faces and unreferenced vertices", clean);
@@ -148,45 +137,54 @@ void declare_resolutions(StepOptions& steps) {
     steps.number<int64_t>("--subsample", "N", "Keep N random vertices", at_least<int64_t, 1>,
                           [](const Mesh& mesh, int64_t count) { return subsample_random(mesh, count); });
     steps.number<double>("--subsample-cells", "EDGE",
-                         "Keep the mean vertex of each cell of a grid of this edge length", positive,
-                         subsample_voxels);
+                         "Keep the mean vertex of each cell of a grid of this edge length",
+                         geometry::require_positive<double>, subsample_voxels);
     steps.number<double>("--voxelize", "EDGE",
-                         "Keep the centre of each occupied cell of a grid of this edge length", positive,
-                         voxelize);
+                         "Keep the centre of each occupied cell of a grid of this edge length",
+                         geometry::require_positive<double>, voxelize);
     steps.number<int>("--decimate", "N", "Simplify to at most N faces", at_least<int, 0>,
                       [](const Mesh& mesh, int faces) {
                           return decimate(mesh, {faces, {}});
                       });
-    steps.number<double>("--decimate-error", "X", "Simplify up to a surface error of at most X", not_negative,
-                         [](const Mesh& mesh, double error) {
+    steps.number<double>("--decimate-error", "X", "Simplify up to a surface error of at most X",
+                         geometry::require_not_negative, [](const Mesh& mesh, double error) {
                              return decimate(mesh, {{}, error});
                          });
-    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times", check_range<int, 0, 12>,
+    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times",
+                      in_range<int, geometry::upsample_iterations>,
                       [](const Mesh& mesh, int iterations) { return upsample(mesh, iterations); });
-    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing", check_range<int, 0, 100000>,
+    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing",
+                      in_range<int, geometry::smooth_iterations>,
                       [](const Mesh& mesh, int iterations) { return smooth(mesh, iterations); });
 }
 
+/// A file of no points is none.
+constexpr geometry::Range some_samples{1, geometry::sample_counts.most};
+
 void declare_points(StepOptions& steps) {
     steps.number<int64_t>("--sample-surface", "N", "Sample N points on the surface, uniform by area",
-                          check_range<int64_t, 1, std::numeric_limits<int32_t>::max()>,
+                          in_range<int64_t, some_samples>,
                           [](const Mesh& mesh, int64_t count) { return sample_surface(mesh, count); });
     steps.number<int>("--estimate-normals", "K",
                       "Estimate normals from the K nearest neighbours of each vertex",
-                      check_range<int, 3, 256>, [](const Mesh& mesh, int k) {
+                      in_range<int, geometry::neighbor_counts>, [](const Mesh& mesh, int k) {
                           return estimate_normals(mesh, {k, {}});
                       });
     steps.number<int>("--estimate-surfels", "K",
                       "Estimate surfels from the K nearest neighbours of each vertex",
-                      check_range<int, 3, 256>, [](const Mesh& mesh, int k) {
+                      in_range<int, geometry::neighbor_counts>, [](const Mesh& mesh, int k) {
                           return estimate_surfels(mesh, {k, {}});
                       });
     steps.flag("--to-surfels", "Make one surfel per vertex of a mesh, or per splat", surfels_from_mesh);
 }
 
+Box3d corners_box(const std::array<double, 6>& v) {
+    return Box3d(Vec3d(v[0], v[1], v[2]), Vec3d(v[3], v[4], v[5]));
+}
+
 template <Keep keep>
 Mesh cut_by_box(const Mesh& mesh, const std::array<double, 6>& v) {
-    return crop_box(mesh, Box3d(Vec3d(v[0], v[1], v[2]), Vec3d(v[3], v[4], v[5])), keep);
+    return crop_box(mesh, corners_box(v), keep);
 }
 
 template <Keep keep>
@@ -195,17 +193,11 @@ Mesh cut_by_sphere(const Mesh& mesh, const std::array<double, 4>& v) {
 }
 
 void check_box(const char* option, const std::array<double, 6>& v) {
-    for (size_t i = 0; i < 3; ++i)
-        if (!(v[i] <= v[i + 3]))
-            throw ArgumentError(
-                fmt::format("{}: expected a box whose lowest corner is below its highest, got {}", option,
-                            fmt::join(v, ",")));
+    geometry::require_box(option, corners_box(v));
 }
 
 void check_sphere(const char* option, const std::array<double, 4>& v) {
-    if (!std::all_of(v.begin(), v.end(), [](double number) { return std::isfinite(number); }) || v[3] <= 0)
-        throw ArgumentError(
-            fmt::format("{}: expected a finite centre and a radius > 0, got {}", option, fmt::join(v, ",")));
+    geometry::require_sphere(option, Vec3d(v[0], v[1], v[2]), v[3]);
 }
 
 void declare_cuts(StepOptions& steps) {
@@ -233,7 +225,7 @@ void declare_splats(StepOptions& steps) {
     steps.flag("--to-cloud", "Make a cloud of the means of splats", cloud_from_splats);
     steps.number<int>(
         "--to-mesh", "N", "Make a mesh of the surface of splats, N cells along the longest side",
-        check_range<int, 8, 512>,
+        in_range<int, geometry::splat_mesh_resolutions>,
         [](const Mesh& mesh, int resolution) { return mesh_from_splats(mesh, {.resolution = resolution}); });
 }
 

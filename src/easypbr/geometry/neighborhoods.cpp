@@ -31,7 +31,7 @@ void take_distinct(Neighborhoods& result, const Array3f& V) {
 }  // namespace
 
 Neighborhoods find_neighborhoods(const char* what, const Array3f& V, int k) {
-    require_between(fmt::format("{}: k", what).c_str(), k, 3, 256);
+    require_in(fmt::format("{}: k", what).c_str(), k, neighbor_counts);
     Neighborhoods result;
     take_distinct(result, V);
     const size_t count = result.count();

@@ -165,9 +165,7 @@ Mesh remove_unreferenced_vertices(const Mesh& mesh) {
 }
 
 Mesh remove_duplicate_vertices(const Mesh& mesh, const DuplicateOptions& options) {
-    if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
-        throw ArgumentError(fmt::format(
-            "remove_duplicate_vertices: tolerance: expected a number >= 0, got {}", options.tolerance));
+    geometry::require_not_negative("remove_duplicate_vertices: tolerance", options.tolerance);
     const auto data = mesh.snapshot();
     const std::vector<int32_t> first = representatives(*data, options);
     Selection selection = geometry::select_all(*data);

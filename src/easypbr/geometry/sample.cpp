@@ -96,7 +96,7 @@ std::vector<int32_t> nearest_corners(const MeshData& mesh, const Samples& sample
 }  // namespace
 
 Mesh sample_surface(const Mesh& mesh, int64_t count, uint64_t seed) {
-    geometry::require_between("sample_surface: count", count, 0, std::numeric_limits<int32_t>::max());
+    geometry::require_in("sample_surface: count", count, geometry::sample_counts);
     const auto data = mesh.snapshot();
     geometry::require_faces("sample_surface", *data);
     const Samples samples = choose(*data, size_t(count), seed);

@@ -22,8 +22,7 @@ void require(const DecimateOptions& options) {
         throw ArgumentError("decimate: expected a number of faces or a largest error, got neither");
     if (options.faces && *options.faces < 0)
         throw ArgumentError(fmt::format("decimate: faces: expected a number >= 0, got {}", *options.faces));
-    if (options.error && (!(*options.error >= 0) || !std::isfinite(*options.error)))
-        throw ArgumentError(fmt::format("decimate: error: expected a number >= 0, got {}", *options.error));
+    if (options.error) geometry::require_not_negative("decimate: error", *options.error);
 }
 
 /// What is left of a range of faces. `relative_error` is in units of the mesh's extent.

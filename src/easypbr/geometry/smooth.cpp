@@ -31,7 +31,7 @@ Positions step(const Positions& before, const geometry::Adjacency& adjacency, do
 }  // namespace
 
 Mesh smooth(const Mesh& mesh, int iterations, Smoothing smoothing) {
-    geometry::require_between("smooth: iterations", iterations, 0, 100000);
+    geometry::require_in("smooth: iterations", iterations, geometry::smooth_iterations);
     const auto data = mesh.snapshot();
     geometry::require_faces("smooth", *data);
     const geometry::Adjacency adjacency(*data);

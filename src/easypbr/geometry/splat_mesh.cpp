@@ -163,7 +163,8 @@ void add_looks(const Isosurface& surface, const Density& density, MeshData& to) 
 Mesh mesh_from_splats(const Mesh& mesh, const SplatMeshOptions& options) {
     const std::shared_ptr<const MeshData> source = mesh.snapshot();
     geometry::require_splats("mesh_from_splats", *source);
-    geometry::require_between("mesh_from_splats: resolution", options.resolution, 8, 512);
+    geometry::require_in("mesh_from_splats: resolution", options.resolution,
+                         geometry::splat_mesh_resolutions);
     if (!(options.level > 0 && options.level < 1))
         throw ArgumentError(fmt::format(
             "mesh_from_splats: level: expected a number above 0 and below 1, got {}", options.level));

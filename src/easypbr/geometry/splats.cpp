@@ -52,8 +52,7 @@ ArrayXf colors_of(const SplatArrays& splats) {
 Mesh crop_box(const Mesh& mesh, const Box3d& box, Keep keep) {
     const auto data = mesh.snapshot();
     geometry::require_vertices("crop_box", *data);
-    if (!(box.sizes().array() >= 0).all())
-        throw ArgumentError("crop_box: expected a box whose lowest corner is below its highest");
+    geometry::require_box("crop_box", box);
     return kept("crop_box", *data,
                 [&](Eigen::Index i) { return box.contains(place_of(*data, i)) == (keep == Keep::inside); });
 }
@@ -61,8 +60,7 @@ Mesh crop_box(const Mesh& mesh, const Box3d& box, Keep keep) {
 Mesh crop_sphere(const Mesh& mesh, const Vec3d& center, double radius, Keep keep) {
     const auto data = mesh.snapshot();
     geometry::require_vertices("crop_sphere", *data);
-    geometry::require_positive("crop_sphere: radius", radius);
-    if (!center.allFinite()) throw ArgumentError("crop_sphere: expected a finite centre");
+    geometry::require_sphere("crop_sphere", center, radius);
     return kept("crop_sphere", *data, [&](Eigen::Index i) {
         return ((place_of(*data, i) - center).norm() <= radius) == (keep == Keep::inside);
     });

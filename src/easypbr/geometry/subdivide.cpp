@@ -206,7 +206,7 @@ MeshData refined(const MeshData& mesh, Subdivision subdivision) {
 }  // namespace
 
 Mesh upsample(const Mesh& mesh, int iterations, Subdivision subdivision) {
-    geometry::require_between("upsample: iterations", iterations, 0, 12);
+    geometry::require_in("upsample: iterations", iterations, geometry::upsample_iterations);
     const auto data = mesh.snapshot();
     geometry::require_faces("upsample", *data);
     const double faces = double(data->F.rows()) * std::pow(4.0, iterations);
