@@ -69,7 +69,7 @@ TEST(Colormap, CoolwarmIsThatOfThePaper) {
 TEST(Colormap, NamesAreSuggested) {
     EXPECT_EQ(colormap_names().size(), 16u);
     for (const std::string& name : colormap_names()) EXPECT_EQ(parse_colormap(name).text(), name);
-    EXPECT_EQ(colormap_named("Turbo"), Colormap::turbo);
+    EXPECT_EQ(parse_colormap("Turbo"), Colormap::turbo);
     try {
         parse_colormap("viridiss");
         FAIL();

@@ -70,9 +70,6 @@ const std::vector<std::string>& colormap_names();
 /// them: "navy,#ffffff,#800000". Throws NameError with the nearest name, ArgumentError for what is wrong with
 /// a colour.
 Colormap parse_colormap(std::string_view text);
-inline Colormap colormap_named(const std::string& name) {
-    return parse_colormap(name);
-}
 
 /// The colours of 256 equal parts of the values, the least first.
 ColorTable color_table(const Colormap& colormap);
