@@ -70,9 +70,10 @@ struct Material {
 
     // KHR_materials_specular, KHR_materials_ior: the specular reflection of dielectrics.
     static constexpr float default_ior = 1.5f;
-    float ior = default_ior;       ///< index of refraction, 1 to 100; 0: reflectance 1
-    float specular = 1;            ///< strength, 0 to 1
-    Vec3 specular_color{1, 1, 1};  ///< at normal incidence
+    static constexpr float default_f0 = 0.04f;  ///< reflectance of default_ior at normal incidence
+    float ior = default_ior;                    ///< index of refraction, 1 to 100; 0: reflectance 1
+    float specular = 1;                         ///< strength, 0 to 1
+    Vec3 specular_color{1, 1, 1};               ///< at normal incidence
 
     // KHR_materials_transmission, KHR_materials_volume: refraction and absorption.
     float transmission = 0;           ///< fraction of light transmitted, 0 to 1

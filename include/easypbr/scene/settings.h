@@ -109,7 +109,8 @@ struct ShadowSettings {
 struct ShadingSettings {
     Brdf brdf = Brdf::height_correlated;  ///< masking-shadowing function of GGX
     bool multiple_scattering = true;      ///< energy compensation
-    float dielectric_f0 = 0.04f;          ///< reflectance at normal incidence where ior is 1.5, 0 to 1
+    /// Reflectance at normal incidence where ior is 1.5, 0 to 1.
+    float dielectric_f0 = Material::default_f0;
 };
 
 /// Eye-dome lighting of points without normals (Boucheny 2009).

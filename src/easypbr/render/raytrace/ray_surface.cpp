@@ -9,9 +9,6 @@
 namespace easypbr::render {
 namespace {
 
-/// Reflectance at a right angle of what names no index of refraction.
-constexpr float default_f0 = 0.04f;
-
 int wrapped(float coordinate, int size, Wrap wrap) {
     if (!std::isfinite(coordinate)) return 0;
     const float period = wrap == Wrap::mirror ? 2.0f : 1.0f;
@@ -136,7 +133,7 @@ Passage passage_at(const DrawItem& item, int element, float u, float v) {
         metallic *= channel(m.metallic_texture);
         passage.thickness *= channel(m.thickness_texture);
     }
-    passage.entering = 1 - m.dielectric_f0(default_f0);
+    passage.entering = 1 - m.dielectric_f0(Material::default_f0);
     passage.tint = color.cwiseMin(1.0f).cwiseMax(0.0f) * std::clamp(through * (1 - metallic), 0.0f, 1.0f);
     return passage;
 }
