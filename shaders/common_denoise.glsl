@@ -9,6 +9,16 @@ const float normal_fall = 64.0 * 4.0;  // of normals that are brought to 0 to 1
 const float color_fall = 30.0;
 const float depth_fall = 80.0;
 
+// Light is compared as displays show it, more or less: what is far brighter than white differs little, and the noise of a
+// highlight is not that of what lies around it.
+float compressed(float bright) { return log(1.0 + bright); }
+
+// The variance of that. Of light that noise may be all of, all of it.
+float compressed_noise(float bright, float variance) {
+    float deviation = compressed(bright) - compressed(max(bright - sqrt(max(variance, 0.0)), 0.0));
+    return deviation * deviation;
+}
+
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
 vec3 unpacked(float bits) { return unpackUnorm4x8(floatBitsToUint(bits)).rgb; }

@@ -6,7 +6,7 @@
 #feature TONE_NONE is_clamped
 #feature SCENE_LINEAR is_scene_linear
 #feature PARTLY_COVERED is_partly_covered
-#feature COVERED_AT_EDGES is_covered_at_edges  // nothing shines through: a mean of opaque surfaces and nothing
+#feature COVERED_AT_EDGES is_covered_at_edges  // nothing shines through: a mean of opaque surfaces, of caught shadow and of nothing
 
 // Stephen Hill's fit of the ACES reference and output transforms (sRGB).
 vec3 aces(vec3 c) {
@@ -57,9 +57,10 @@ vec3 tone_map(vec3 c) {
     return is_clamped ? clamp(c, 0.0, 1.0) : c;
 }
 
-// Display light, premultiplied by its alpha, of premultiplied radiance.
-vec4 displayed(vec4 radiance, float exposure) {
-    if (is_covered_at_edges) return vec4(tone_map(radiance.rgb * (exposure / max(radiance.a, 1e-6))) * radiance.a, radiance.a);
+// Display light, premultiplied by its alpha, of premultiplied radiance. `covered`: the part of a pixel that surfaces cover, which
+// is less than its alpha where a shadow is caught.
+vec4 displayed(vec4 radiance, float exposure, float covered) {
+    if (is_covered_at_edges) return vec4(tone_map(radiance.rgb * (exposure / max(covered, 1e-6))) * covered, radiance.a);
     if (!is_partly_covered) return vec4(tone_map(radiance.rgb * exposure) * radiance.a, radiance.a);
     // The curve is for what a surface shows, not for what its opacity leaves of it. Light that is brighter than its
     // coverage (a reflection on clear glass) covers more of what is behind: up to all.

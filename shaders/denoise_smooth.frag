@@ -9,13 +9,14 @@ uniform int u_step;            // between taps, pixels
 layout(location = 0) out vec4 o_light;
 
 // Standard deviations over which the weight falls with the difference of luminance.
-const float deviations = 4.0;
+const float deviations = 4.25;
 
-// The luminance that is compared and its variance; variance of the pixel's own; normals' fall, and how much of its light is
+// The luminance that is compared, compressed(), and its variance; variance of the pixel's own; normals' fall, and how much of its light is
 // taken: see packed_fall().
 vec4 compared(ivec2 at, vec4 light) {
-    return has_estimate ? texelFetch(u_estimate, at, 0)
-                        : vec4(luminance(light.rgb), light.a, light.a, packed_fall(normal_fall, 1.0));
+    if (has_estimate) return texelFetch(u_estimate, at, 0);
+    float bright = luminance(light.rgb);
+    return vec4(compressed(bright), compressed_noise(bright, light.a), light.a, packed_fall(normal_fall, 1.0));
 }
 
 // Binomial weights: 1 4 6 4 1 of the first level, 1 2 1 of the others, whose taps lie apart.

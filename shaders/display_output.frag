@@ -5,15 +5,12 @@
 #feature SUM is_sum  // of frames, tone mapped
 #feature BACKGROUND_IMAGE has_background_image
 #feature LINEAR_OUTPUT is_linear_output
-#feature SHADOW has_shadow  // of a shadow catcher, before nothing
 
 uniform sampler2D u_source;     // accumulated display light; or one frame's radiance
 uniform float u_sample_scale;   // of a sum: 1 / samples
 uniform vec4 u_background;      // linear display light, premultiplied by alpha
 uniform sampler2D u_background_image;  // linear display light, premultiplied
 uniform vec4 u_background_uv;   // scale and offset that cover the picture without distortion
-uniform sampler2D u_shadow_share;  // sum of shadow_share.frag
-uniform float u_share_scale;       // 1 / frames
 
 layout(location = 0) out vec4 o_color;
 
@@ -48,7 +45,7 @@ void main() {
         o_color = color;
     } else if (has_shadow) {
         float left = 1.0 - (is_sum ? source.a * u_sample_scale : source.a);
-        o_color = encoded_with_shadow(color, left, textureLod(u_shadow_share, uv, 0.0).r * u_share_scale);
+        o_color = encoded_with_shadow(color, left, left_to_catcher(uv));
     } else {
         o_color = encoded(color);
     }

@@ -19,7 +19,8 @@ layout(location = 0) out vec4 o_color;
 
 // With all layers over it.
 vec3 under_layers(vec3 color, vec4 over, vec2 uv) {
-    vec4 light = displayed(textureLod(u_radiance, uv, 0.0), u_exposure);
+    vec4 radiance = textureLod(u_radiance, uv, 0.0);
+    vec4 light = displayed(radiance, u_exposure, radiance.a);
     // The overlay holds halves: where nothing came over the colour, the colour itself is finer.
     vec3 apart = abs(over.rgb - color) - color / 1024.0;
     bool same = max(apart.r, max(apart.g, apart.b)) <= 1e-7;

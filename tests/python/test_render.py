@@ -102,6 +102,27 @@ def test_backgrounds(sphere, size, tmp_path):
 
 
 @pytest.mark.parametrize("size", [(0, 10), (-1, 10), (70000, 10)])
+def linear(codes):
+    codes = codes / 255.0
+    return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+
+
+# Of a pixel with the alpha a a black page is a surface's light times a, and a white one 1 - a more, whatever is caught below.
+# 0.02: half a code of alpha, and half a code of each picture at up to 0.009 of linear light a code.
+@pytest.mark.parametrize("strength", [1.0, 30.0])
+def test_bright_silhouettes_let_the_page_through_before_a_catcher(strength):
+    ball = shapes.sphere()
+    ball.material.base_color, ball.material.emissive = "#000000", (strength, strength, 0.5 * strength)
+    def drawn(page):
+        return render(ball, size=(100, 80), samples=8, background=page)[:40]  # above the ground
+
+    alpha = drawn("transparent")[..., 3] / 255.0
+    edge = (alpha > 0.1) & (alpha < 0.9)
+    assert edge.sum() > 20
+    through = linear(drawn("#ffffff")[..., :3]) - linear(drawn("#000000")[..., :3])
+    assert np.abs(through - (1 - alpha)[..., None])[edge].max() < 0.02
+
+
 def test_impossible_sizes(sphere, size):
     with pytest.raises(ValueError, match="size"):
         render(sphere, size=size)

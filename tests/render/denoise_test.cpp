@@ -295,6 +295,26 @@ TEST(Denoise, FilterKeepsWhatIsCertain) {
         for (int x = 0; x < 96; ++x) EXPECT_NEAR(at(smooth, x, y), 0.5f * float(1 + (x + y) % 3), 1e-5f);
 }
 
+// A lamp in smooth metal: light that falls by ten from ring to ring, with a fifth of it as noise in each
+// pixel, on an even ground of 0.1. The rings keep what they are within a half, which is three deviations of
+// single pixels; where noise is taken from what is brighter around, those of 1 and 10 become that of 100.
+TEST(Denoise, FilterKeepsTheShapeOfHighlights) {
+    Made made;
+    const auto ring = [](int x, int y) { return std::max(std::abs(x - 48), std::abs(y - 32)); };
+    const auto light = [&](int x, int y) {
+        return std::max(0.1f, 1000.0f * std::pow(0.1f, float(ring(x, y))));
+    };
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x)
+            made.set(x, y, light(x, y), 0.2f * light(x, y), Vec3(0, 0, 1), Vec3(1, 1, 1));
+    Transfers transfers;
+    EdgeAvoidingFilter filter;
+    const Target& smooth = filter.smooth(made.noisy(), transfers);
+    for (int y = 26; y <= 38; ++y)
+        for (int x = 42; x <= 54; ++x)
+            if (ring(x, y) > 0) EXPECT_NEAR(at(smooth, x, y) / light(x, y), 1, 0.5) << x << ' ' << y;
+}
+
 // A library that is not there is named, with what to do.
 TEST(Denoise, SaysWhatIsMissing) {
     if (!OpenImageDenoise::version().empty()) GTEST_SKIP() << "Open Image Denoise is there";

@@ -20,7 +20,7 @@ struct LitPicture {
     const Target* caught = nullptr;    ///< light of a shadow catcher, see GroundPass::caught()
     const GBuffer* guides = nullptr;   ///< for denoising, where layers change what the targets hold
     PixelRect covered;                 ///< all surfaces, lines and layers are inside
-    bool partly_covered = false;       ///< the radiance may hold coverages between 0 and 1
+    bool partly_covered = false;       ///< the radiance may be brighter than what it covers
     bool spreads = false;              ///< light may fall beyond `covered`
 };
 
