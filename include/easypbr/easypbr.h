@@ -21,6 +21,7 @@
 #include "easypbr/geometry/repair.h"
 #include "easypbr/geometry/sample.h"
 #include "easypbr/geometry/surfels.h"
+#include "easypbr/geometry/tubes.h"
 #include "easypbr/geometry/voxels.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"

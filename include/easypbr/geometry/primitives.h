@@ -34,6 +34,31 @@ Mesh make_capsule(float radius = 0.5f, float height = 1, int segments = 64);
 /// is 2.5 times as wide and 6 radii long, but at most half of the arrow.
 Mesh make_arrow(const Vec3& from, const Vec3& to, std::optional<float> radius = std::nullopt,
                 int segments = 32);
+
+/// How arrows of a vector field look.
+struct ArrowOptions {
+    /// Length of an arrow by that of its vector, above 0; 1: true lengths. Automatic: the longest arrow is as
+    /// long as neighbouring starts are apart (the median), but at least a fiftieth of the diagonal of their
+    /// bounding box; 1 where all starts are at one place.
+    std::optional<double> scale;
+    /// Of all shafts, above 0. Automatic: a fortieth of the longest arrow, at most a twelfth of each.
+    std::optional<double> radius;
+    int segments = 12;  ///< around each arrow, 3 to 8192
+    /// One for each arrow, as scalars "value" that colour the arrows; or none.
+    Array1f values;
+    ArrayXf colors;  ///< sRGB, n x 3 or n x 4, one for each arrow; or none
+    /// Whether rows that are not finite throw; else they are left out with a warning.
+    bool strict = false;
+};
+/// Arrows of a vector field as one mesh, each from its start along its vector, with the head of make_arrow()
+/// and without uv: 7 * segments vertices an arrow, in the order of the rows. Vectors of length 0 have no
+/// arrow. The lengths of the vectors are scalars "length", which colour the arrows when asked for. Starts far
+/// from zero give the mesh an offset. Throws ArgumentError for rows that do not fit together, and when no row
+/// is finite.
+Mesh make_arrows(const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& starts,
+                 const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& vectors,
+                 const ArrowOptions& options = {});
+
 /// Arrows along x, y and z from the origin, coloured red, green and blue by vertex.
 Mesh make_axes(float length = 1, std::optional<float> radius = std::nullopt);
 /// Newell's Utah teapot from its 32 Bezier patches, standing on y = 0, `height` high, each patch cut
