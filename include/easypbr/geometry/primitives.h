@@ -40,13 +40,13 @@ struct ArrowOptions {
     /// Length of an arrow by that of its vector, above 0; 1: true lengths. Automatic: the longest arrow is as
     /// long as neighbouring starts are apart (the median), but at least a fiftieth of the diagonal of their
     /// bounding box; 1 where all starts are at one place.
-    std::optional<double> scale;
+    std::optional<double> scale = {};
     /// Of all shafts, above 0. Automatic: a fortieth of the longest arrow, at most a twelfth of each.
-    std::optional<double> radius;
+    std::optional<double> radius = {};
     int segments = 12;  ///< around each arrow, 3 to 8192
     /// One for each arrow, as scalars "value" that colour the arrows; or none.
-    Array1f values;
-    ArrayXf colors;  ///< sRGB, n x 3 or n x 4, one for each arrow; or none
+    Array1f values = {};
+    ArrayXf colors = {};  ///< sRGB, n x 3 or n x 4, one for each arrow; or none
     /// Whether rows that are not finite throw; else they are left out with a warning.
     bool strict = false;
 };

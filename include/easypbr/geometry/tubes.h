@@ -12,9 +12,9 @@ enum class TubeEnds { round, flat };
 
 struct TubeOptions {
     /// In the mesh's unit, above 0. Automatic: a two-hundredth of the diagonal of the box of the edges.
-    std::optional<double> radius;
+    std::optional<double> radius = {};
     /// One for each vertex, above 0 for those of edges; or none.
-    Array1f radii;
+    Array1f radii = {};
     int sides = 12;  ///< around the tube, 3 to 8192
     TubeEnds ends = TubeEnds::round;
 };

@@ -66,21 +66,24 @@ std::vector<int32_t> drawn_rows(const FieldRef& starts, const FieldRef& vectors,
     return rows;
 }
 
-/// The median distance from a point to its nearest neighbour at another place; of many a part is asked. 0:
-/// there are no two places.
+/// The median distance from a point to its nearest neighbour at another place, among those that have one
+/// within their nearest eight; of many a part is asked. 0: there are no two places.
 double neighbor_spacing(const Array3f& points) {
-    if (points.rows() < 2) return 0;
     const size_t count = std::min(size_t(points.rows()), offset_sample_count);
     Array3f::Dense queries(Eigen::Index(count), 3);
     for (size_t i = 0; i < count; ++i)
         queries.row(Eigen::Index(i)) = points.row(Eigen::Index(spread_row(i, count, size_t(points.rows()))));
-    const KdTree::Nearest found = KdTree(points).nearest(queries, 2);
-    std::vector<float> distances;
-    for (size_t i = 0; i < count; ++i)
-        if (found.distances(Eigen::Index(i), 1) > 0) distances.push_back(found.distances(Eigen::Index(i), 1));
-    if (distances.empty()) return 0;
-    const auto middle = distances.begin() + ptrdiff_t(distances.size() / 2);
-    std::ranges::nth_element(distances, middle);
+    const int neighbors = int(std::min<Eigen::Index>(9, points.rows()));
+    const KdTree::Nearest found = KdTree(points).nearest(queries, neighbors);
+    std::vector<float> spacings;
+    for (Eigen::Index i = 0; i < found.distances.rows(); ++i) {
+        const auto distances = found.distances.row(i);
+        const auto first = std::ranges::find_if(distances, [](float distance) { return distance > 0; });
+        if (first != distances.end()) spacings.push_back(*first);
+    }
+    if (spacings.empty()) return 0;
+    const auto middle = spacings.begin() + ptrdiff_t(spacings.size() / 2);
+    std::ranges::nth_element(spacings, middle);
     return *middle;
 }
 
