@@ -49,7 +49,8 @@ def figure(name: str):
 
 FIGURES = [figure(name) for name in ("eye_dome_lighting", "surfel_steps", "bunny_surfels", "labelled_street", "plants",
                                      "all_kinds", "scalar_field", "colormaps", "slices", "shadows_and_occlusion", "gltf_materials",
-                                     "figure_10", "transparent_shadows", "splats", "splat_dataset", "depth_image")]
+                                     "figure_10", "transparent_shadows", "splats", "splat_dataset", "depth_image",
+                                     "vector_field")]
 
 
 def row(pictures) -> np.ndarray:

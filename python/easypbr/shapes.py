@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _easypbr
-from ._easypbr import arrow, axes, box, capsule, cone, cylinder, grid, icosphere, plane, sphere, teapot, torus
+from ._easypbr import arrow, arrows, axes, box, capsule, cone, cylinder, grid, icosphere, plane, sphere, teapot, torus
 from .errors import ArgumentError
 
 __all__ = [
     "arrow",
+    "arrows",
     "axes",
     "box",
     "camera_frustum",

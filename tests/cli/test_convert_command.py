@@ -69,6 +69,16 @@ def test_normals_and_surfels_of_points(easypbr, sphere):
         assert info(easypbr, file)["faces"] == 0 and "normals" in info(easypbr, file)["attributes"]
 
 
+def test_lines_become_tubes(easypbr, tmp_path):
+    (tmp_path / "lines.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n")
+    easypbr("convert", "lines.obj", "tubes.glb", "--tubes", "0.1")
+    found = info(easypbr, "tubes.glb")
+    # Two bands of 12 quads, and at both ends two bands and 12 triangles of a half sphere.
+    assert found["faces"] == 2 * 24 + 2 * (2 * 24 + 12)
+    # The ends' poles and the outside of the mitre are 0.1 beyond the line.
+    assert size(found) == pytest.approx([1.2, 1.2, 0.2], abs=1e-6)
+
+
 def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
     easypbr("convert", box, "box.glb")
     easypbr("convert", "box.glb", "one.glb", "--merge")
@@ -90,6 +100,8 @@ def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
     (["--crop-box", "1,2,3"], 2, "--crop-box"),
     (["--crop-sphere", "0,0,0,-1"], 2, "a radius > 0, got 0,0,0,-1"),
     (["--crop-sphere", "99,0,0,1"], 1, "nothing stays"),
+    (["--tubes", "0"], 2, "--tubes: expected a number > 0, got 0"),
+    (["--tubes", "0.1"], 1, "--tubes: expected a mesh with edges (E) of a length above 0"),
     (["--decimate-splats", "5"], 1, "expected a mesh with splats"),
 ])
 def test_bad_steps_write_nothing(easypbr, box, tmp_path, steps, code, message):

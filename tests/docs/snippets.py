@@ -44,6 +44,7 @@ def write_inputs(folder):
     easypbr.save_image(grain, folder / "wood.png")
     easypbr.save_image(np.full((4, 4, 3), (128, 128, 255), np.uint8), folder / "normal.png")
     write_gltf(folder / "scene.gltf")
+    (folder / "lines.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n")
     places = "".join(f"{x / 10} {y / 10} {1 + x / 20}\n" for y in range(8) for x in range(8))
     (folder / "frame.pcd").write_text("VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 8\nHEIGHT 8\n"
                                       f"POINTS 64\nDATA ascii\n{places}")

@@ -253,3 +253,41 @@ def test_other_threads_run_meanwhile():
     other.join()
     # A call that keeps the interpreter's lock lets no tick happen but at its ends.
     assert after - before > 3
+
+
+def line(**arrays):
+    return easypbr.as_mesh({"V": np.array([[0, 0, 0], [2.0, 0, 0], [2, 3, 0]]), "E": np.array([[0, 1], [1, 2]]), **arrays})
+
+
+def test_lines_become_tubes():
+    lines = line(C=np.eye(3))
+    lines.scalars["heat"] = [1, 2, 3]
+    tubes = lines.to_tubes(0.25, sides=16, ends="flat")
+    # A mitre keeps the volume of prisms along the lines, of 16 sides: n / 2 sin(2 pi / n) r^2.
+    assert volume(tubes) == pytest.approx(5 * 8 * np.sin(np.pi / 8) * 0.25 ** 2, rel=1e-5)
+    assert len(tubes.E) == 0 and len(lines.E) == 2
+    for vertex, place in ((0, [0, 0, 0]), (2, [2, 3, 0])):
+        near = np.linalg.norm(tubes.V - place, axis=1) < 0.3
+        assert (tubes.scalars["heat"][near] == vertex + 1).all() and (tubes.C[near] == np.eye(3)[vertex]).all()
+    # Automatic: 1 / 200 of the diagonal of the line's box.
+    assert lines.to_tubes().V[:, 1].max() == pytest.approx(3 + np.sqrt(13) / 200, abs=1e-6)
+
+
+def test_tubes_have_a_radius_for_each_vertex():
+    tubes = line().to_tubes(np.array([0.1, 0.2, 0.3]))
+    assert tubes.V[:, 0].min() == pytest.approx(-0.1, abs=1e-6)
+    assert tubes.V[:, 1].max() == pytest.approx(3.3, abs=1e-6)
+    assert line().to_tubes(np.float32(0.5)).V[:, 1].max() == pytest.approx(3.5, abs=1e-6)
+
+
+@pytest.mark.parametrize("call, message", [
+    (lambda: shapes.box().to_tubes(), "make_tubes: expected a mesh with edges"),
+    (lambda: line().to_tubes(NAN), "make_tubes: radius: expected a number > 0, got nan"),
+    (lambda: line().to_tubes([0.1, 0.2]), "make_tubes: radii: expected one for each of 3 vertices, got 2"),
+    (lambda: line().to_tubes([0.1, 0, 0.2]), "make_tubes: radius of vertex 1: expected a number > 0, got 0"),
+    (lambda: line().to_tubes(ends="sharp"), "to_tubes: ends: expected 'round' or 'flat', got 'sharp'"),
+    (lambda: line().to_tubes(sides=2), "make_tubes: sides: expected a whole number from 3 to 8192, got 2"),
+])
+def test_impossible_tubes_raise(call, message):
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        call()

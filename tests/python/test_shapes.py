@@ -35,6 +35,50 @@ def test_arrow_and_axes():
         assert axes.C[axes.V[:, axis].argmax()].argmax() == axis
 
 
+def test_arrows_of_a_field():
+    starts = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    vectors = np.array([[0, 3, 0], [0, 0, 0], [0, 0, 1.0]])
+    arrows = shapes.arrows(starts, vectors, scale=1, radius=0.1, segments=8, values=[5, 6, 7], colors=np.eye(3))
+    # 7 rings of 8; the vector of length 0 has no arrow. The first vertex of each is its tip.
+    assert len(arrows.V) == 2 * 56
+    np.testing.assert_allclose(arrows.V[[0, 56]], [[0, 3, 0], [2, 0, 1]], atol=1e-6)
+    assert arrows.scalars["length"][[0, 111]].tolist() == [3, 1]
+    assert arrows.scalars["value"][[0, 111]].tolist() == [5, 7]
+    assert arrows.C[[0, 111]].tolist() == [[1, 0, 0], [0, 0, 1]]
+    # Neighbours are 2 apart, which is more than a fiftieth of it.
+    np.testing.assert_allclose(shapes.arrows(starts, vectors).V[0], [0, 2, 0], atol=1e-6)
+
+
+def test_arrows_far_from_zero_keep_their_place():
+    starts = np.array([[500000.25, 5400000.5, 100], [500001.25, 5400000.5, 100]])
+    arrows = shapes.arrows(starts, [[0.125, 0, 0], [0, 0.125, 0]], scale=1)
+    tips = arrows.V[[0, 7 * 12]].astype(np.float64) + arrows.offset
+    # The offset is whole, so that the local coordinates are below 1024: float32 has them to 2^-14.
+    np.testing.assert_allclose(tips, starts + [[0.125, 0, 0], [0, 0.125, 0]], atol=1e-4)
+
+
+def test_arrows_leave_out_what_is_not_finite(caplog):
+    starts, vectors = np.zeros((3, 3)), np.ones((3, 3))
+    starts[1, 2] = NAN
+    assert len(shapes.arrows(starts, vectors).V) == 2 * 84
+    assert "1 of 3 arrows have no finite start and vector and are left out" in caplog.text
+    with pytest.raises(easypbr.ArgumentError, match="in row 1 of 3"):
+        shapes.arrows(starts, vectors, strict=True)
+    assert len(shapes.arrows(np.zeros((0, 3)), np.zeros((0, 3))).V) == 0
+
+
+@pytest.mark.parametrize("starts, vectors, options, message", [
+    ([[0, 0]], [[1, 1, 1]], {}, "arrows: starts: expected n x 3, got 1 x 2 int64"),
+    ([[0, 0, 0]], [1, 1, 1], {}, "arrows: vectors: expected n x 3, got 3 int64"),
+    ([[0, 0, 0]], np.ones((2, 3)), {}, "arrows: vectors: expected one for each of 1 starts, got 2"),
+    ([[0, 0, 0]], [[1, 1, 1]], {"scale": -1}, "arrows: scale: expected a number > 0, got -1"),
+    ([[0, 0, 0]], [[1, 1, 1]], {"values": [1, 2]}, "arrows: values: expected one for each of 1 starts, got 2"),
+])
+def test_fields_that_do_not_fit_raise(starts, vectors, options, message):
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        shapes.arrows(starts, vectors, **options)
+
+
 @pytest.mark.parametrize("call", [
     lambda: shapes.sphere(0),
     lambda: shapes.icosphere(1, 11),

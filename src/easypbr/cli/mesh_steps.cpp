@@ -15,6 +15,7 @@
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/sample.h"
 #include "easypbr/geometry/surfels.h"
+#include "easypbr/geometry/tubes.h"
 
 namespace easypbr::cli {
 namespace {
@@ -229,6 +230,12 @@ void declare_splats(StepOptions& steps) {
         [](const Mesh& mesh, int resolution) { return mesh_from_splats(mesh, {.resolution = resolution}); });
 }
 
+void declare_lines(StepOptions& steps) {
+    steps.number<double>(
+        "--tubes", "RADIUS", "Make closed tubes of this radius along the lines", positive,
+        [](const Mesh& mesh, double radius) { return make_tubes(mesh, {.radius = radius}); });
+}
+
 /// The option in place of the function that a message begins with: "crop_box: expected ...".
 std::string message_of(const MeshStep& step, std::string_view message) {
     const size_t colon = message.find(": ");
@@ -249,6 +256,7 @@ void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps) {
     declare_points(options);
     declare_cuts(options);
     declare_splats(options);
+    declare_lines(options);
 }
 
 void check_mesh_steps(const std::vector<MeshStep>& steps) {

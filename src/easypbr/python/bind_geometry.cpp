@@ -11,6 +11,7 @@
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
 #include "easypbr/geometry/sample.h"
+#include "easypbr/geometry/tubes.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/text.h"
 
@@ -239,6 +240,34 @@ void bind_splats(MeshClass& mesh) {
             "longest side, 8 to 512. With the splats' colours, and their labels if they have some.");
 }
 
+/// `radius`: None, a number, or one for each vertex.
+Mesh to_tubes(const Mesh& mesh, const nb::object& radius, int sides, const std::string& ends) {
+    TubeOptions options;
+    options.sides = sides;
+    options.ends =
+        chosen<TubeEnds>("to_tubes: ends", ends, {{"round", TubeEnds::round}, {"flat", TubeEnds::flat}});
+    if (!radius.is_none()) {
+        const nb::object numbers = numeric_object(radius, "to_tubes: radius");
+        if (numeric_array(numbers, "to_tubes: radius").ndim() == 0)
+            options.radius = nb::cast<double>(numbers.attr("item")());
+        else
+            options.radii = to_array<float, 1>(numbers, {"radius", 1, 1});
+    }
+    return released([&] { return make_tubes(mesh, options); });
+}
+
+void bind_lines(MeshClass& mesh) {
+    mesh.def(
+        "to_tubes", to_tubes, nb::arg("radius") = nb::none(), nb::arg("sides") = 12,
+        nb::arg("ends") = "round",
+        nb::sig("def to_tubes(self, radius: numpy.typing.ArrayLike | None = None, sides: int = 12, ends: "
+                "str = 'round') -> Mesh"),
+        "A new mesh of closed tubes along the edges (E), with what the vertices have. `radius`: a number, "
+        "one for each vertex, or by default 1/200 of the diagonal of the box. Lines are mitred at "
+        "corners and end in half spheres at branches and sharp turns, and at their ends, which may be "
+        "'flat'.");
+}
+
 }  // namespace
 
 void bind_geometry(nb::module_&) {
@@ -248,6 +277,7 @@ void bind_geometry(nb::module_&) {
     bind_resolution(mesh);
     bind_cuts(mesh);
     bind_splats(mesh);
+    bind_lines(mesh);
 }
 
 }  // namespace easypbr::python

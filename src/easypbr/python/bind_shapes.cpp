@@ -1,4 +1,5 @@
 // Shapes made in code: the module easypbr.shapes.
+#include <fmt/format.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 
@@ -59,6 +60,30 @@ Mesh voxels(const CellValues& values, const ArrayLike& origin, double cell_size,
         const auto* data = static_cast<const float*>(values.data());
         return make_voxels(grid, ArrayXf(nullptr, data, rows, Eigen::Index(values.shape(3))));
     });
+}
+
+using FieldRows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// The object's numbers as n x 3 in double precision.
+FieldRows to_field(nb::handle object, const char* what) {
+    const nb::object numbers = numeric_object(object, what);
+    const AnyArray given = numeric_array(numbers, what);
+    if (given.ndim() != 2 || given.shape(1) != 3)
+        throw ArgumentError(fmt::format("{}: expected n x 3, got {}", what, shape_text(given)));
+    const nb::object doubles = nb::module_::import_("numpy").attr("ascontiguousarray")(numbers, "float64");
+    const auto rows = nb::cast<nb::ndarray<nb::ro, const double, nb::device::cpu, nb::c_contig>>(doubles);
+    return Eigen::Map<const FieldRows>(rows.data(), Eigen::Index(rows.shape(0)), 3);
+}
+
+Mesh arrows(const ArrayLike& starts, const ArrayLike& vectors, std::optional<double> scale,
+            std::optional<double> radius, int segments, const nb::object& values, const nb::object& colors,
+            bool strict) {
+    const FieldRows from = to_field(starts, "arrows: starts"), along = to_field(vectors, "arrows: vectors");
+    ArrowOptions options{.scale = scale, .radius = radius, .segments = segments, .strict = strict};
+    if (!values.is_none())
+        options.values = to_array<float, 1>(flags_as_numbers(values, "arrows: values"), {"values", 1, 1});
+    if (!colors.is_none()) options.colors = to_colors(colors, {"colors", 3, 4});
+    return released([&] { return make_arrows(from, along, options); });
 }
 
 void bind_round_shapes(nb::module_& module) {
@@ -135,6 +160,22 @@ void bind_signs(nb::module_& module) {
         },
         nb::arg("start"), nb::arg("end"), nb::arg("radius").none() = nb::none(), nb::arg("segments") = 32,
         "An arrow between two points; `radius` is that of the shaft, default 1/40 of the length.");
+    module.def(
+        "arrows", arrows, nb::arg("starts"), nb::arg("vectors"), nb::arg("scale") = nb::none(),
+        nb::arg("radius") = nb::none(), nb::arg("segments") = 12, nb::arg("values") = nb::none(),
+        nb::arg("colors") = nb::none(), nb::arg("strict") = false,
+        nb::sig("def arrows(starts: numpy.typing.ArrayLike, vectors: numpy.typing.ArrayLike, scale: float | "
+                "None = None, radius: float | None = None, segments: int = 12, values: "
+                "numpy.typing.ArrayLike | None = None, colors: numpy.typing.ArrayLike | None = None, strict: "
+                "bool = False) -> Mesh"),
+        "Arrows of a vector field, n x 3 starts and vectors, as one mesh. Lengths are those of the vectors "
+        "times `scale`: 1 for true lengths, by default such that the longest arrow is as long as "
+        "neighbouring "
+        "starts are apart, but at least a fiftieth of the diagonal of their box. `radius` is that of all "
+        "shafts, default 1/40 of the longest arrow and at most 1/12 of each. Vectors of length 0 have no "
+        "arrow. `values`, n, are scalars \"value\" that colour the arrows; the vectors' lengths are scalars "
+        "\"length\", which do when asked for. Rows that are not finite are left out with a warning, or raise "
+        "ArgumentError if strict.");
     module.def(
         "axes", [](float length, std::optional<float> radius) { return make_axes(length, radius); },
         nb::arg("length") = 1.0f, nb::arg("radius").none() = nb::none(),
