@@ -29,10 +29,10 @@ def field_line(phase: float) -> Mesh:
 
 
 def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
-    ring = shapes.torus(1, 0.42, segments=40, tube_segments=16).remove_duplicate_vertices(keep_seams=False)
+    ring = shapes.torus(1, 0.42, segments=30, tube_segments=12).remove_duplicate_vertices(keep_seams=False)
     body = shapes.torus(1, 0.41, segments=192, tube_segments=96)
     settings = {"camera": {"elevation_deg": 40}}
-    arrows = shapes.arrows(ring.V, flow(ring))
+    arrows = shapes.arrows(ring.V, flow(ring), scale=0.1)
     arrows.style.scalar = "length"
     left = Scene()
     left.show(body, "ring")

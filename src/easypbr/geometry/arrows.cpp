@@ -97,14 +97,14 @@ double automatic_scale(const Array3f& starts, double longest) {
 struct ArrowRing {
     double radius, y;
     Vec2d normal;
-    double shift = 0;  ///< of the normals, in segments
+    int shift = 0;  ///< of the normals, in half segments
 };
 
 /// As make_arrow() has them, from the tip to the bottom.
 std::array<ArrowRing, rings_of_arrow> rings_of(double length, double radius) {
     const double rim = 2.5 * radius, head = std::min(6 * radius, length / 2), neck = length - head;
     const Vec2d slope = Vec2d(head, rim).normalized(), below(0, -1), outwards(1, 0);
-    return {{{0, length, slope, 0.5},
+    return {{{0, length, slope, 1},
              {rim, neck, slope},
              {rim, neck, below},
              {radius, neck, below},
@@ -117,19 +117,22 @@ std::array<ArrowRing, rings_of_arrow> rings_of(double length, double radius) {
 class ArrowVertices {
   public:
     ArrowVertices(size_t arrows, int segments)
-        : segments_(segments), V_(rows(arrows), 3), N_(rows(arrows), 3) {}
+        : segments_(segments), V_(rows(arrows), 3), N_(rows(arrows), 3) {
+        for (int i = 0; i < 2 * segments; ++i)
+            circle_.emplace_back(std::cos(pi * i / segments), std::sin(pi * i / segments));
+    }
 
     void set(size_t arrow, const Vec3d& start, const Vec3d& along, double length, double radius) {
         const Vec3d u = along.unitOrthogonal(), v = along.cross(u);
-        const auto around = [&](double segment) -> Vec3d {
-            const double phi = 2 * pi * segment / segments_;
-            return std::cos(phi) * u + std::sin(phi) * v;
+        const auto around = [&](int half_segments) -> Vec3d {
+            const Vec2d& turn = circle_[size_t(half_segments)];
+            return turn.x() * u + turn.y() * v;
         };
         Eigen::Index row = rows(arrow);
         for (const ArrowRing& ring : rings_of(length, radius))
             for (int i = 0; i < segments_; ++i, ++row) {
-                const Vec3d place = start + ring.y * along + ring.radius * around(i);
-                const Vec3d normal = ring.normal.x() * around(i + ring.shift) + ring.normal.y() * along;
+                const Vec3d place = start + ring.y * along + ring.radius * around(2 * i);
+                const Vec3d normal = ring.normal.x() * around(2 * i + ring.shift) + ring.normal.y() * along;
                 V_.row(row) = place.cast<float>().transpose();
                 N_.row(row) = normal.cast<float>().transpose();
             }
@@ -144,6 +147,7 @@ class ArrowVertices {
     Eigen::Index rows(size_t arrows) const { return Eigen::Index(arrows) * rings_of_arrow * segments_; }
 
     int segments_;
+    std::vector<Vec2d> circle_;  ///< of radius 1, in half segments
     Array3f::Dense V_, N_;
 };
 
@@ -173,6 +177,18 @@ Array3i repeated(const std::vector<std::array<int32_t, 3>>& faces, size_t arrows
                 F(Eigen::Index(arrow * faces.size() + i), k) = faces[i][size_t(k)] + shift;
     });
     return F;
+}
+
+/// Each row as often as an arrow has vertices.
+template <class A>
+A for_vertices(const A& array, size_t of_arrow) {
+    if (array.empty()) return {};
+    typename A::Dense result(array.rows() * Eigen::Index(of_arrow), array.cols());
+    parallel_for(size_t(array.rows()), arrow_grain, [&](size_t arrow) {
+        const auto count = Eigen::Index(of_arrow), row = Eigen::Index(arrow);
+        result.middleRows(row * count, count).rowwise() = array.row(row);
+    });
+    return A(std::move(result));
 }
 
 }  // namespace
@@ -209,14 +225,10 @@ Mesh make_arrows(const FieldRef& starts, const FieldRef& vectors, const ArrowOpt
     mesh.offset = local.offset;
     mesh.F = repeated(arrow_faces(options.segments), rows.size(), options.segments);
 
-    std::vector<int32_t> source(rows.size() * of_arrow), arrow(source.size());
-    for (size_t i = 0; i < source.size(); ++i) {
-        arrow[i] = int32_t(i / of_arrow);
-        source[i] = rows[i / of_arrow];
-    }
-    mesh.C = rows_of(options.colors, source);
-    if (!options.values.empty()) mesh.scalars.push_back({"value", rows_of(options.values, source)});
-    mesh.scalars.push_back({"length", rows_of(Array1f(lengths.cast<float>()), arrow), true});
+    mesh.C = for_vertices(rows_of(options.colors, rows), of_arrow);
+    if (!options.values.empty())
+        mesh.scalars.push_back({"value", for_vertices(rows_of(options.values, rows), of_arrow)});
+    mesh.scalars.push_back({"length", for_vertices(Array1f(lengths.cast<float>()), of_arrow), true});
     return Mesh(std::move(mesh));
 }
 

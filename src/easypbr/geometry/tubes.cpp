@@ -148,25 +148,27 @@ struct LineFrame {
         return result;
     }
 
-    Vec3d around(double phi) const { return std::cos(phi) * u + std::sin(phi) * v; }
+    Vec3d around(const Vec2d& turn) const { return turn.x() * u + turn.y() * v; }
 };
 
 /// The surface of tubes while it is made.
 class TubeSurface {
   public:
-    explicit TubeSurface(int sides) : sides_(sides) {}
+    explicit TubeSurface(int sides) : sides_(sides) {
+        for (int i = 0; i < sides; ++i)
+            circle_.emplace_back(std::cos(2 * pi * i / sides), std::sin(2 * pi * i / sides));
+    }
 
     /// A ring of vertices around `center` in the plane across `plane`, with the normals of a cone around the
     /// other frame's line whose normals lean by `slope` along it. Returns its first vertex.
     int32_t add_ring(const Vec3d& center, double radius, const LineFrame& frame, const Vec3d& plane,
                      const LineFrame& normals, double slope, int32_t source) {
         const int32_t first = next(source, sides_);
-        for (int i = 0; i < sides_; ++i) {
-            const double phi = 2 * pi * i / sides_;
-            const Vec3d across = frame.around(phi);
+        for (const Vec2d& turn : circle_) {
+            const Vec3d across = frame.around(turn);
             const Vec3d slide = frame.along * (across.dot(plane) / frame.along.dot(plane));
             V_.push_back((center + radius * (across - slide)).cast<float>());
-            N_.push_back((normals.around(phi) + slope * normals.along).normalized().cast<float>());
+            N_.push_back((normals.around(turn) + slope * normals.along).normalized().cast<float>());
         }
         return first;
     }
@@ -177,7 +179,7 @@ class TubeSurface {
         for (int i = 0; i < sides_; ++i) {
             V_.push_back(Vec3(V_[size_t(ring + i)]));
             N_.push_back(
-                (normals.around(2 * pi * i / sides_) + slope * normals.along).normalized().cast<float>());
+                (normals.around(circle_[size_t(i)]) + slope * normals.along).normalized().cast<float>());
         }
         return first;
     }
@@ -256,6 +258,7 @@ class TubeSurface {
     }
 
     int sides_;
+    std::vector<Vec2d> circle_;  ///< of radius 1
     std::vector<Vec3> V_, N_;
     std::vector<std::array<int32_t, 3>> F_;
     std::vector<int32_t> source_;  ///< the line's vertex that each one belongs to

@@ -258,7 +258,7 @@ Mesh to_tubes(const Mesh& mesh, const nb::object& radius, int sides, const std::
 
 void bind_lines(MeshClass& mesh) {
     mesh.def(
-        "to_tubes", to_tubes, nb::arg("radius") = nb::none(), nb::arg("sides") = 12,
+        "to_tubes", to_tubes, nb::arg("radius").none() = nb::none(), nb::arg("sides") = 12,
         nb::arg("ends") = "round",
         nb::sig("def to_tubes(self, radius: numpy.typing.ArrayLike | None = None, sides: int = 12, ends: "
                 "str = 'round') -> Mesh"),

@@ -162,8 +162,8 @@ void bind_signs(nb::module_& module) {
         "An arrow between two points; `radius` is that of the shaft, default 1/40 of the length.");
     module.def(
         "arrows", arrows, nb::arg("starts"), nb::arg("vectors"), nb::arg("scale") = nb::none(),
-        nb::arg("radius") = nb::none(), nb::arg("segments") = 12, nb::arg("values") = nb::none(),
-        nb::arg("colors") = nb::none(), nb::arg("strict") = false,
+        nb::arg("radius") = nb::none(), nb::arg("segments") = 12, nb::arg("values").none() = nb::none(),
+        nb::arg("colors").none() = nb::none(), nb::arg("strict") = false,
         nb::sig("def arrows(starts: numpy.typing.ArrayLike, vectors: numpy.typing.ArrayLike, scale: float | "
                 "None = None, radius: float | None = None, segments: int = 12, values: "
                 "numpy.typing.ArrayLike | None = None, colors: numpy.typing.ArrayLike | None = None, strict: "
