@@ -141,7 +141,7 @@ TEST_F(LightsPanel, AMoveByTheHandlesIsOneStep) {
     EXPECT_EQ(view_.drawing().selection().light, "lamp");
     const Light before = lamp();
     const Vec2d at =
-        app::pixel_of(session_.view_point(size).camera, before.position.cast<double>(), size).head<2>();
+        pixel_of(session_.view_point(size).camera, before.position.cast<double>(), size).head<2>();
     const Vec2d from = at + Vec2d(60, 0);
     pointer(Kind::move, from);
     pointer(Kind::press, from);

@@ -242,7 +242,7 @@ TEST_F(Live, AClickSelectsAndTheWheelZoomsToThePointer) {
     const app::ViewPoint view = session_.view_point(size);
     EXPECT_LT(view.camera.position().norm(), before);
     // Picked positions are those of the pixel's centre.
-    EXPECT_LT((app::pixel_of(view.camera, point, size).head<2>() - place).norm(), 1.0);
+    EXPECT_LT((pixel_of(view.camera, point, size).head<2>() - place).norm(), 1.0);
     const Vec2d corner(5, 5);
     step({at(Kind::move, corner)});
     step({at(Kind::press, corner), at(Kind::release, corner)});
@@ -337,8 +337,8 @@ TEST_F(Live, TheManipulatorMovesTheObjectAlongItsAxis) {
     // The x handle goes 90 pixels to the right of the centre.
     drag(middle + Vec2d(60, 0), middle + Vec2d(120, 0));
     const Eigen::Affine3d T = session_.scene().get("ball").T_parent_mesh();
-    const double pixel = app::point_at(session_.view_point(size).camera, {1, 0}, size, 6).x() -
-                         app::point_at(session_.view_point(size).camera, {0, 0}, size, 6).x();
+    const double pixel = point_at(session_.view_point(size).camera, {1, 0}, size, 6).x() -
+                         point_at(session_.view_point(size).camera, {0, 0}, size, 6).x();
     EXPECT_NEAR(T.translation().x(), 60 * pixel, 0.01);
     EXPECT_NEAR(T.translation().tail<2>().norm(), 0, 1e-9);
     EXPECT_LT((camera_position() - Vec3d(0, 0, 6)).norm(), 1e-12);
@@ -356,7 +356,7 @@ TEST_F(Live, UndoTakesPosesAndMaterialsBackAndLeavesTheProgramsOwn) {
     // The program moves it: that is no change of a person's.
     ball().translate(Vec3d(0, 0.1, 0));
     settle();
-    const Vec2d centre = app::pixel_of(session_.view_point(size).camera, Vec3d(0, 0.1, 0), size).head<2>();
+    const Vec2d centre = pixel_of(session_.view_point(size).camera, Vec3d(0, 0.1, 0), size).head<2>();
     drag(centre + Vec2d(60, 0), centre + Vec2d(120, 0));
     settle();
     const Vec3d moved = ball().T_parent_mesh().translation();

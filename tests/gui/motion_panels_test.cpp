@@ -125,7 +125,7 @@ TEST_F(MotionPanels, TheCurveIsDrawnOverThePictureAndFaintBehindSurfaces) {
     const CameraPath& path = *view_.drawing().path().editor.path();
     const Camera camera = session_.view_point(size).camera;
     const auto color_at = [&](const Image& image, double time) {
-        const Vec3d p = app::pixel_of(camera, path.pose(time).translation(), size);
+        const Vec3d p = pixel_of(camera, path.pose(time).translation(), size);
         const uint8_t* c = image.at<uint8_t>(int(p.x()), int(p.y()));
         return Vec3d(c[0], c[1], c[2]);
     };

@@ -1,7 +1,7 @@
 // A camera and the point it turns about, and the ways a person moves them. Pure functions.
 #pragma once
 
-#include "easypbr/scene/camera.h"
+#include "easypbr/scene/pixel.h"
 
 namespace easypbr::app {
 
@@ -13,16 +13,6 @@ struct ViewPoint {
     /// Distance of the target along the optical axis.
     double distance() const { return (target - camera.position()).norm(); }
 };
-
-/// World position of what is seen at a pixel of a picture of `size` at a depth along the optical axis. Pixels
-/// count from the picture's top left corner. The lens's distortion is taken out; beyond a fold of the lens it
-/// is the pinhole's.
-Vec3d point_at(const Camera& camera, Vec2d pixel, Vec2i size, double depth);
-
-/// The pixel that a world position is seen at; x, y may lie outside of the picture. z is the depth along the
-/// optical axis: what has none above 0 is behind a perspective camera. As the lens distorts it, where it
-/// does.
-Vec3d pixel_of(const Camera& camera, const Vec3d& point, Vec2i size);
 
 /// Turns about the target: `right_deg` about the world's up axis, counter-clockwise seen from above, then
 /// `up_deg` about the picture's horizontal, which stops short of looking straight along the axis. The

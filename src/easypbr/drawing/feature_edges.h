@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "easypbr/drawing/eye.h"
+#include "easypbr/scene/eye.h"
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::drawing {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "easypbr/drawing/eye.h"
+#include "easypbr/scene/eye.h"
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::drawing {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "easypbr/app/view_point.h"
+#include "easypbr/scene/pixel.h"
 
 namespace easypbr::drawing {
 namespace {
@@ -22,7 +22,7 @@ Eigen::AlignedBox2d seen_box(const Camera& camera, const Vec2i& size, double mar
         const double x = -margin + t * (size.x() + 2 * margin), y = -margin + t * (size.y() + 2 * margin);
         for (const Vec2d& pixel : {Vec2d(x, -margin), Vec2d(x, size.y() + margin), Vec2d(-margin, y),
                                    Vec2d(size.x() + margin, y)}) {
-            const Vec3d point = T_cam_world * app::point_at(camera, pixel, size, 1);
+            const Vec3d point = T_cam_world * point_at(camera, pixel, size, 1);
             box.extend(Vec2d(point.head<2>()));
         }
     }
@@ -63,7 +63,7 @@ Sight::Sight(const Camera& camera, const Vec2i& size, double margin)
 }
 
 Vec2d Sight::pixel(const Vec3d& point) const {
-    return app::pixel_of(camera_, point, size_).head<2>();
+    return pixel_of(camera_, point, size_).head<2>();
 }
 
 Stretch Sight::clipped(const FeatureEdge& edge) const {

@@ -32,15 +32,15 @@ struct View {
     Vec2i size;
 
     std::optional<ImVec2> project(const Vec3d& point) const {
-        const Vec3d p = app::pixel_of(camera, point, size);
+        const Vec3d p = pixel_of(camera, point, size);
         if (camera.projection == Projection::perspective && p.z() <= camera.near) return {};
         return ImVec2(float(p.x()), float(p.y()));
     }
     /// World length of a number of pixels at a point.
     double length_of(float pixels, const Vec3d& at) const {
-        const double depth = app::pixel_of(camera, at, size).z();
-        const Vec3d a = app::point_at(camera, {0, 0}, size, depth);
-        return (app::point_at(camera, {double(pixels), 0}, size, depth) - a).norm();
+        const double depth = pixel_of(camera, at, size).z();
+        const Vec3d a = point_at(camera, {0, 0}, size, depth);
+        return (point_at(camera, {double(pixels), 0}, size, depth) - a).norm();
     }
 };
 

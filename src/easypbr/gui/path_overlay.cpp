@@ -25,8 +25,8 @@ class Overlay {
     /// A straight piece, short enough to be seen or hidden as a whole.
     void piece(Vec3d a, Vec3d b, ImU32 color, float width) const {
         if (!clip(a, b)) return;
-        const Vec3d p = app::pixel_of(camera_, a, state_.screen.size),
-                    q = app::pixel_of(camera_, b, state_.screen.size);
+        const Vec3d p = pixel_of(camera_, a, state_.screen.size),
+                    q = pixel_of(camera_, b, state_.screen.size);
         const Vec3d middle = (p + q) / 2;
         if (is_hidden(middle)) color = (color & ~IM_COL32_A_MASK) | (60u << IM_COL32_A_SHIFT);
         list_.AddLine(ImVec2(float(p.x()), float(p.y())), ImVec2(float(q.x()), float(q.y())), color,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/pixel.h"
 
 namespace easypbr {
 namespace {
@@ -56,6 +57,32 @@ Mat4d orthographic_matrix(double width, double height, double near, double far) 
     P(2, 2) = 1 / (far - near);
     P(2, 3) = far / (far - near);
     return P;
+}
+
+/// x/z and y/z in OpenCV's axes of what a warped camera sees at a pixel; nothing beyond a fold of its lens.
+std::optional<Vec2d> slopes_at(const Camera& camera, Vec2d pixel, Vec2i size) {
+    const Mat3d K = camera.opencv_K(size.x(), size.y());
+    const double y = (pixel.y() - 0.5 - K(1, 2)) / K(1, 1);
+    const Vec2d seen((pixel.x() - 0.5 - K(0, 2) - K(0, 1) * y) / K(0, 0), y);
+    try {
+        return camera.distortion ? camera.distortion->undistort(seen) : seen;
+    } catch (const ArgumentError&) {
+        return {};
+    }
+}
+
+/// Where a warped camera sees a point of its own frame; nothing behind it and beyond a fold of its lens.
+std::optional<Vec2d> warped_pixel_of(const Camera& camera, const Vec3d& local, Vec2i size) {
+    if (local.z() >= 0) return {};
+    const Vec2d slopes(-local.x() / local.z(), local.y() / local.z());
+    const Vec2d seen = camera.distortion ? camera.distortion->distort(slopes) : slopes;
+    const Mat3d K = camera.opencv_K(size.x(), size.y());
+    const Vec2d pixel(K(0, 0) * seen.x() + K(0, 1) * seen.y() + K(0, 2) + 0.5,
+                      K(1, 1) * seen.y() + K(1, 2) + 0.5);
+    // Beyond a fold the lens shows another point there.
+    const std::optional<Vec2d> shown = slopes_at(camera, pixel, size);
+    constexpr double same = 1e-6;
+    return shown && (*shown - slopes).norm() < same ? std::optional(pixel) : std::nullopt;
 }
 
 }  // namespace
@@ -146,6 +173,30 @@ Mat4d Camera::opencv_T_world_cam() const {
     Mat4d T = T_world_cam.matrix();
     T.topLeftCorner<3, 3>() = T_world_cam.linear() * axis_flip.asDiagonal();
     return T;
+}
+
+Vec3d point_at(const Camera& camera, Vec2d pixel, Vec2i size, double depth) {
+    if (camera.is_warped())
+        if (const auto slopes = slopes_at(camera, pixel, size))
+            return camera.T_world_cam * (depth * Vec3d(slopes->x(), -slopes->y(), -1));
+    const Mat4d p = camera.projection_matrix(double(size.x()) / size.y());
+    const Vec2d ndc(2 * pixel.x() / size.x() - 1, 1 - 2 * pixel.y() / size.y());
+    Vec3d local(0, 0, -depth);
+    for (int axis = 0; axis < 2; ++axis)
+        local[axis] = camera.projection == Projection::orthographic
+                          ? (ndc[axis] - p(axis, 3)) / p(axis, axis)
+                          : depth * (ndc[axis] + p(axis, 2)) / p(axis, axis);
+    return camera.T_world_cam * local;
+}
+
+Vec3d pixel_of(const Camera& camera, const Vec3d& point, Vec2i size) {
+    const Mat4d p = camera.projection_matrix(double(size.x()) / size.y());
+    const Vec3d local = camera.T_world_cam.inverse() * point;
+    if (camera.is_warped())
+        if (const auto pixel = warped_pixel_of(camera, local, size))
+            return {pixel->x(), pixel->y(), -local.z()};
+    const Eigen::Vector4d clip = p * local.homogeneous();
+    return {(clip.x() / clip.w() + 1) / 2 * size.x(), (1 - clip.y() / clip.w()) / 2 * size.y(), -local.z()};
 }
 
 }  // namespace easypbr

@@ -1,10 +1,10 @@
-// Where a line drawing is seen from.
+// Where a camera sees from: a point, or a direction.
 #pragma once
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/camera.h"
 
-namespace easypbr::drawing {
+namespace easypbr {
 
 struct Eye {
     bool is_perspective = true;
@@ -23,4 +23,4 @@ struct Eye {
     double depth(const Vec3d& point) const { return (position - point).dot(backward); }
 };
 
-}  // namespace easypbr::drawing
+}  // namespace easypbr
