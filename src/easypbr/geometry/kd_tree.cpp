@@ -58,14 +58,6 @@ class Collector {
     std::vector<std::pair<float, int32_t>>& found_;
 };
 
-void require_finite(const char* what, const Array3f& points) {
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-        if (!points.row(i).allFinite())
-            throw ArgumentError(fmt::format("{}: expected finite points, got ({}, {}, {}) in row {} of {}",
-                                            what, points(i, 0), points(i, 1), points(i, 2), i,
-                                            points.rows()));
-}
-
 /// Equally far points in the order of their indices.
 void order_ties(int32_t* indices, const float* distances, int k) {
     for (int begin = 0, end; begin < k; begin = end) {
@@ -89,7 +81,7 @@ struct KdTree::Index {
 
 KdTree::KdTree(const Array3f& points) {
     if (points.empty()) throw ArgumentError("k-d tree: expected at least one point, got none");
-    require_finite("k-d tree", points);
+    geometry::require_finite("k-d tree", points);
     index_ = std::make_shared<const Index>(points);
 }
 
@@ -99,7 +91,7 @@ Eigen::Index KdTree::size() const {
 
 KdTree::Nearest KdTree::nearest(const Array3f& queries, int k) const {
     geometry::require_between("nearest neighbours: k", k, 1, size());
-    require_finite("nearest neighbours", queries);
+    geometry::require_finite("nearest neighbours", queries);
     Rows<int32_t>::Dense all_indices(queries.rows(), k);
     Rows<float>::Dense all_distances(queries.rows(), k);
     parallel_chunks(size_t(queries.rows()), query_grain, [&](size_t begin, size_t end) {
@@ -124,7 +116,7 @@ KdTree::Within KdTree::within(const Array3f& queries, float radius) const {
     if (!(radius >= 0) || !std::isfinite(radius))
         throw ArgumentError(
             fmt::format("neighbours within a radius: expected a finite number >= 0, got {}", radius));
-    require_finite("neighbours within a radius", queries);
+    geometry::require_finite("neighbours within a radius", queries);
     using Found = std::vector<std::pair<float, int32_t>>;
     const auto count = size_t(queries.rows());
     std::vector<Found> found(count);

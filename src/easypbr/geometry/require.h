@@ -57,4 +57,14 @@ inline void require_sphere(const char* what, const Vec3d& center, double radius)
                                         what, center.x(), center.y(), center.z(), radius));
 }
 
+/// Throws ArgumentError "WHAT: expected finite CALLED, got (X, Y, Z) in row I of N"; rows are of three
+/// numbers.
+template <class Rows>
+void require_finite(const char* what, const Rows& rows, const char* called = "points") {
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        if (!rows.row(i).allFinite())
+            throw ArgumentError(fmt::format("{}: expected finite {}, got ({}, {}, {}) in row {} of {}", what,
+                                            called, rows(i, 0), rows(i, 1), rows(i, 2), i, rows.rows()));
+}
+
 }  // namespace easypbr::geometry
