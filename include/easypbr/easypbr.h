@@ -17,6 +17,7 @@
 #include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/geometry/rays.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
 #include "easypbr/geometry/sample.h"

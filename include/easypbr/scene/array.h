@@ -110,6 +110,7 @@ using Array3f = Array<float, 3>;
 using Array4f = Array<float, 4>;
 using ArrayXf = Array<float, Eigen::Dynamic>;
 using Array1d = Array<double, 1>;
+using Array3d = Array<double, 3>;
 using Array1i = Array<int32_t, 1>;
 using Array2i = Array<int32_t, 2>;
 using Array3i = Array<int32_t, 3>;
