@@ -101,7 +101,9 @@ bool fits_int32(Element value) {
 
 template <class Dense, class Element>
 void copy_floats(Dense& result, const Element* data, const Layout& layout, float scale = 1) {
-    copy_rows(result, data, layout, [scale](Element value, Eigen::Index) { return float(value) * scale; });
+    using Scalar = typename Dense::Scalar;
+    copy_rows(result, data, layout,
+              [scale](Element value, Eigen::Index) { return Scalar(value) * Scalar(scale); });
 }
 
 /// Colours of a type that does not tell their range become 0 to 1.
@@ -379,6 +381,7 @@ Array3f to_local(nb::handle object, const ArrayShape& shape, const Vec3d& offset
 template Array1f::Dense to_array<float, 1>(nb::handle, const ArrayShape&);
 template Array2f::Dense to_array<float, 2>(nb::handle, const ArrayShape&);
 template Array3f::Dense to_array<float, 3>(nb::handle, const ArrayShape&);
+template Array3d::Dense to_array<double, 3>(nb::handle, const ArrayShape&);
 template ArrayXf::Dense to_array<float, Eigen::Dynamic>(nb::handle, const ArrayShape&);
 template Array4f::Dense to_array<float, 4>(nb::handle, const ArrayShape&);
 template Array1i::Dense to_array<int32_t, 1>(nb::handle, const ArrayShape&);
