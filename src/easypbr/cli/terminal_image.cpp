@@ -81,7 +81,7 @@ std::string iterm_text(const Image& image) {
 using Rgb = std::array<uint8_t, 3>;
 
 /// A pixel; nothing where more of what is behind it shows.
-std::optional<Rgb> pixel_of(const Image& image, int x, int y) {
+std::optional<Rgb> rgb_at(const Image& image, int x, int y) {
     if (y >= image.height()) return {};
     const uint8_t* p = image.at<uint8_t>(x, y);
     const int channels = image.channels();
@@ -97,7 +97,7 @@ std::string blocks_text(const Image& image) {
     };
     for (int y = 0; y < image.height(); y += 2) {
         for (int x = 0; x < image.width(); ++x) {
-            const auto upper = pixel_of(image, x, y), lower = pixel_of(image, x, y + 1);
+            const auto upper = rgb_at(image, x, y), lower = rgb_at(image, x, y + 1);
             text += "\x1b[0m";
             if (upper) color(38, *upper);
             if (lower) color(upper ? 48 : 38, *lower);
@@ -118,7 +118,7 @@ constexpr std::array<std::array<int, 4>, 4> bayer{
 
 /// The palette's colour of a pixel; -1: none.
 int palette_index(const Image& image, int x, int y) {
-    const auto color = pixel_of(image, x, y);
+    const auto color = rgb_at(image, x, y);
     if (!color) return -1;
     const double threshold = (bayer[size_t(y % 4)][size_t(x % 4)] + 0.5) / 16;
     int index = 0;

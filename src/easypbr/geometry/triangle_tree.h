@@ -130,7 +130,7 @@ struct TriangleTree {
     /// Those of the leaves before the one that counts as `leaf` from 0 on: all hold equally many, or one
     /// more.
     size_t triangles_before(size_t leaf) const {
-        return size_t(uint64_t(original.size()) * leaf / first_leaf);
+        return size_t(uint64_t(original.size()) * leaf >> std::countr_zero(first_leaf));
     }
 
     void halve(std::vector<Centre>& centres, size_t node) const {
