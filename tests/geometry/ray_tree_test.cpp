@@ -145,7 +145,7 @@ TEST(RayTree, MeetsWhatTryingAllMeets) {
     EXPECT_GT(met, 400);
 }
 
-/// Places on vertices and edges of a mesh, and near them by some of the last bits.
+/// Places on vertices and edges of a mesh.
 std::vector<Vec3d> seams_of(const MeshData& mesh) {
     std::vector<Vec3d> places;
     for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
@@ -178,8 +178,8 @@ TEST(RayTree, CountsWindingsThroughVerticesAndEdgesExactly) {
     const auto mesh = ball(1, 2);
     const RayTree tree(*mesh);
     const std::vector<Vec3d> seams = seams_of(*mesh);
-    // Below and above places of the seams, along the ray that is counted on; half a radius is far from what
-    // rounding can say of either side.
+    // Counted along z: the rays of all three points pass the seam, or end before it. Within 0.9 of the axis
+    // the middle is inside, for the faces are nowhere below 0.95.
     for (const Vec3d& seam : seams) {
         const double middle = seam.head<2>().norm();
         const auto inside = tree.contains(
@@ -348,14 +348,13 @@ TEST(VisibleVertices, OfAChildAreThoseThatTheParentDoesNotHide) {
 }
 
 TEST(VisibleVertices, OfACameraLieInItsPicture) {
-    // A plane of 4 in 4 x 4 squares, seen from 2 above: 90 degrees show 2 to either side in a square picture,
-    // and 1 to either side of the shorter axis of one twice as wide as high at 53.13 degrees.
+    // Vertices at whole numbers from -2 to 2, seen from 2 above: half of the picture's height shows 1.2
+    // there, half of its width 2.4.
     const Mesh plane = make_plane(4, 4);
     Camera camera = Camera::look_at({0, 2, 0}, {0, 0, 0}, {0, 0, -1});
     camera.fov_y_deg = degrees(2 * std::atan(1.2 / 2));
     const std::vector<uint8_t> seen = visible_vertices(plane, camera, Vec2i(200, 100));
     const auto V = plane.V();
-    // 1.2 up and down, 2.4 left and right.
     for (Eigen::Index v = 0; v < V.rows(); ++v) EXPECT_EQ(seen[size_t(v)], std::abs(V(v, 2)) < 1.2f) << v;
     EXPECT_EQ(visible_vertices(plane, camera), std::vector<uint8_t>(25, 1))
         << "without a size: all before it";
