@@ -81,6 +81,87 @@ TEST_F(EditsTest, UndoTakesBackThePropertyThatWasChangedAlone) {
     EXPECT_EQ(ball.style().flat, Override<bool>(false));
 }
 
+// A value between those of float: what is read again is not what was chosen.
+TEST_F(EditsTest, WhatTheProgramHasSetInPlaceOfALookStays) {
+    note();
+    edits_.change_look("ball", "material.roughness", {0.85});
+    note();
+    edits_.change_look("ball", "material.metallic", {0.35});
+    note();
+    Mesh ball = session_.scene().get("ball");
+    ball.edit([](MeshData& data) { data.materials.at(0).roughness = 0.25f; });
+    note();
+    const Material before;
+    for (const bool undone : {true, false}) {
+        for (int i = 0; i < 2; ++i) undone ? edits_.undo() : edits_.redo();
+        EXPECT_EQ(ball.material().roughness, 0.25f);
+        EXPECT_EQ(ball.material().metallic, undone ? before.metallic : 0.35f);
+    }
+    // The next choice is a person's again, and goes back to the program's.
+    edits_.change_look("ball", "material.roughness", {0.5});
+    note();
+    edits_.undo();
+    EXPECT_EQ(ball.material().roughness, 0.25f);
+    edits_.redo();
+    EXPECT_EQ(ball.material().roughness, 0.5f);
+}
+
+TEST_F(EditsTest, WhatTheProgramHasSetInPlaceOfAPoseStays) {
+    note();
+    Mesh ball = session_.scene().get("ball");
+    const auto place = [&] { return ball.T_parent_mesh().translation().eval(); };
+    edits_.will_move("ball");
+    ball.translate(Vec3d(0.18, 0, 0));
+    note();
+    ball.translate(Vec3d(0, 0.5, 0));
+    note();
+    edits_.undo();
+    EXPECT_EQ(place(), Vec3d(0.18, 0.5, 0));
+    edits_.redo();
+    EXPECT_EQ(place(), Vec3d(0.18, 0.5, 0));
+    // A move of more frames than one is a person's.
+    for (const int frames : {1, 2}) {
+        for (int i = 0; i < frames; ++i) {
+            edits_.keep_chosen();
+            edits_.will_move("ball");
+            ball.translate(Vec3d(0, 0, 1));
+        }
+        note();
+    }
+    EXPECT_EQ(place(), Vec3d(0.18, 0.5, 3));
+    edits_.undo();
+    EXPECT_EQ(place(), Vec3d(0.18, 0.5, 1));
+    edits_.undo();
+    EXPECT_EQ(place(), Vec3d(0.18, 0.5, 0));
+}
+
+TEST_F(EditsTest, WhatTheProgramHasSetInPlaceOfALightStays) {
+    Scene& scene = session_.scene();
+    const auto dim = [&](float intensity) {
+        Light light = scene.light("lamp");
+        light.intensity = intensity;
+        scene.set_light("lamp", light);
+    };
+    scene.set_light("lamp", Light());
+    note();
+    edits_.will_change_light("lamp");
+    dim(2);
+    note();
+    // What is inferred for a picture is no change.
+    scene.latch_light_radius("lamp", 0.5f);
+    note();
+    edits_.undo();
+    EXPECT_EQ(scene.light("lamp").intensity, 1);
+    edits_.redo();
+    EXPECT_EQ(scene.light("lamp").intensity, 2);
+    dim(3);
+    note();
+    edits_.undo();
+    EXPECT_EQ(scene.light("lamp").intensity, 3);
+    edits_.redo();
+    EXPECT_EQ(scene.light("lamp").intensity, 3);
+}
+
 /// A sphere of two materials, half of the faces each.
 Mesh ball_of_two_materials() {
     Mesh ball = make_sphere(1, 12);

@@ -73,6 +73,32 @@ bool same_vertices(const PropertyValue& a, const PropertyValue& b) {
     return std::get<Arrays>(a)->V.revision() == std::get<Arrays>(b)->V.revision();
 }
 
+/// Whether a property is as a person has chosen it; but for arrays.
+struct IsChosen {
+    const PropertyValue& now;
+
+    bool operator()(const Arrays&) const { return true; }
+    bool operator()(const Eigen::Affine3d& pose) const {
+        return std::get<Eigen::Affine3d>(now).matrix() == pose.matrix();
+    }
+    bool operator()(const Value& value) const {
+        return std::ranges::all_of(std::get<std::vector<Value>>(now),
+                                   [&](const Value& own) { return same_choice(own, value); });
+    }
+    bool operator()(const std::vector<Value>& values) const {
+        return std::ranges::equal(std::get<std::vector<Value>>(now), values, same_choice);
+    }
+    bool operator()(const std::optional<Light>& light) const {
+        return without_inferred(std::get<std::optional<Light>>(now)) == without_inferred(light);
+    }
+
+  private:
+    static std::optional<Light> without_inferred(std::optional<Light> light) {
+        if (light) light->radius.release();
+        return light;
+    }
+};
+
 const PropertyValue* choice_in(const Choices& choices, const Property& property) {
     const auto found = choices.find(property);
     return found == choices.end() ? nullptr : found->second.get();
@@ -117,11 +143,14 @@ void Edits::begin(const Property& property) {
 }
 
 void Edits::change_look(const std::string& object, const std::string& property, const Value& value) {
-    if (!node_named(session_.scene(), object)) return;
+    const std::optional<Mesh> node = node_named(session_.scene(), object);
+    if (!node) return;
     const Property changed{object, PropertyKind::look, property};
     begin(changed);
     Put{session_.scene(), changed}(value);
-    chosen_[changed] = std::make_shared<const PropertyValue>(value);
+    // As it is read again: numbers are rounded to float.
+    const std::vector<Value> now = look_values(*node->snapshot(), property);
+    chosen_[changed] = std::make_shared<const PropertyValue>(now.front());
 }
 
 void Edits::change_data(const std::string& object, const std::function<void(MeshData&)>& change) {
@@ -140,6 +169,22 @@ void Edits::change_data(const std::string& object, const std::function<void(Mesh
 }
 
 void Edits::keep_chosen() {
+    give_to_others();
+    leave_changed();
+}
+
+void Edits::leave_changed() {
+    std::erase_if(chosen_, [&](const auto& choice) {
+        const auto& [property, value] = choice;
+        if (touched_.contains(property)) return false;
+        const std::optional<PropertyValue> now = value_now(session_.scene(), property);
+        if (!now || std::visit(IsChosen{*now}, *value)) return false;
+        history_.forget(property);
+        return true;
+    });
+}
+
+void Edits::give_to_others() {
     std::map<std::string, Mesh> present;
     for (auto& [property, programs] : programs_) {
         if (property.kind == PropertyKind::light) continue;

@@ -28,7 +28,8 @@ class Edits {
     /// are shown under its name. Throws as set_look().
     void change_look(const std::string& object, const std::string& property, const Value& value);
     /// Where other data are shown under a name than at the last call, looks and poses that a person chose are
-    /// theirs too; what they came with is what undo() goes back to.
+    /// theirs too; what they came with is what undo() goes back to. A look, pose or light that differs from
+    /// what a person chose was set by the program since, and is its own: undo() and redo() leave it.
     void keep_chosen();
 
     /// Changes a node's arrays, once: other data under its name are left as they are. Throws what the change
@@ -64,6 +65,9 @@ class Edits {
 
     /// Keeps what the program has, where a person changes a property for the first time.
     void begin(const Property& property);
+    /// The two parts of keep_chosen(): data that replace others, and what the program has set since.
+    void give_to_others();
+    void leave_changed();
     void restore(const History::State& state);
     /// From one choice to another; none: what the program has.
     void restore(const Property& property, const PropertyValue* from, const PropertyValue* to);

@@ -5,12 +5,15 @@
 
 namespace easypbr::app {
 
+bool same_choice(const Value& a, const Value& b) {
+    return a.state == b.state && (a.state != Value::State::given || a.data == b.data);
+}
+
 std::vector<std::pair<std::string, Value>> changed_choices(const Settings& before, const Settings& now) {
     std::vector<std::pair<std::string, Value>> changed;
     for (const Field& field : fields()) {
         Value x = field.get(before), y = field.get(now);
-        if (x.state != y.state || (y.state == Value::State::given && x.data != y.data))
-            changed.emplace_back(field.name, std::move(y));
+        if (!same_choice(x, y)) changed.emplace_back(field.name, std::move(y));
     }
     return changed;
 }

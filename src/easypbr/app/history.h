@@ -21,6 +21,9 @@ struct Settings;
 
 namespace easypbr::app {
 
+/// Whether a person would see no difference: what is inferred does not count.
+bool same_choice(const Value& a, const Value& b);
+
 /// The fields that a person would see a difference of, with the values of `now`: what is inferred does not
 /// count.
 std::vector<std::pair<std::string, Value>> changed_choices(const Settings& before, const Settings& now);
