@@ -106,3 +106,18 @@ def test_the_alpha_of_surfaces_before_a_shadow_catcher_is_what_they_cover(size):
     assert partly.any()
     # 1: the share of the ground is a sum of its own.
     assert abs(with_ground.astype(int) - without)[..., 3].max() <= 1
+
+
+@pytest.mark.parametrize("samples", [1, 2])
+@pytest.mark.parametrize("denoise", ["off", "filter"])
+def test_a_shadow_takes_a_part_of_the_light_from_the_first_sample_on(samples, denoise):
+    """What few paths find of a shadow is up to some times the light that there is."""
+    scene = Scene()
+    scene.show(shapes.box(1.0), "box")
+    settings = {"ground.mode": "shadow", "path.enabled": True, "path.denoise": denoise, "image.samples": samples}
+    alpha = Viewer((160, 120), {**settings, "background.mode": "transparent"}, scene).render(hdr=True)[..., 3]
+    assert alpha.min() >= 0 and alpha.max() <= 1
+    # Something of the shadow is there, and not the box alone.
+    assert ((alpha > 0) & (alpha < 1)).sum() > 100
+    page = Viewer((160, 120), {**settings, "background.color": "#ffffff"}, scene).render(hdr=True)
+    assert page[..., :3].min() >= 0

@@ -352,6 +352,8 @@ void RadianceMean::write_mean(const Target& to, const Target* light, const std::
             }
             const float weight = weights_.empty() ? frames : weights_[i].x();
             pixels[i] = weight > least_open ? Vec4(sum / weight) : Vec4(Vec4::Zero());
+            // A shadow found by few samples, or denoised, may take more light than there is.
+            pixels[i].w() = std::clamp(pixels[i].w(), 0.0f, 1.0f);
         });
     });
 }
