@@ -114,9 +114,12 @@ class Viewer(Sharing):
 
     def load_background_image(self, source: Any) -> None:
         """Shows an image behind everything until another background is set: a path, or an array, height x width x (1 to 4),
-        of uint8 or uint16 (sRGB), or of floats (linear, premultiplied by alpha). Files of settings do not hold arrays."""
+        of uint8 or uint16 (sRGB), or of floats (linear, premultiplied by alpha). Files of settings do not hold arrays. What is
+        no image raises an error, and the background before stays."""
         if isinstance(source, (str, os.PathLike)):
-            self._settings.update({"background.image": os.fspath(source), "background.mode": "image"})
+            self._handle.load_background_image(source)
+        elif source is None:
+            raise ArgumentError("background image: expected a path or an array, got None")
         else:
             self._handle.set_background_image(source)
 

@@ -298,6 +298,27 @@ TEST_F(SessionFiles, ImagesInMemoryAreBackgrounds) {
     EXPECT_THROW(session.render(), ArgumentError);
 }
 
+TEST_F(SessionFiles, BackgroundsThatAreNotReadLeaveTheOneBefore) {
+    io::save_image(to_u8(constant_image(Vec3(1, 0, 0))), folder_ / "red.png");
+    Session session = small_session();
+    session.settings().ground.mode = GroundMode::none;
+    const BackgroundSettings& background = session.settings().background;
+    const auto corner = [&] {
+        const Image image = session.render();
+        const uint8_t* p = image.at<uint8_t>(0, 0);
+        return std::vector<int>(p, p + 4);
+    };
+    session.set_background(to_u8(constant_image(Vec3(0, 1, 0))));
+    EXPECT_THROW(session.load_background(folder_ / "none.png"), FileError);
+    EXPECT_EQ(background.image, "");
+    EXPECT_EQ(corner(), (std::vector<int>{0, 255, 0, 255}));
+    session.settings().background.mode = BackgroundMode::color;
+    session.load_background(folder_ / "red.png");
+    EXPECT_EQ(background.image, (folder_ / "red.png").string());
+    EXPECT_EQ(background.mode, BackgroundMode::image);
+    EXPECT_EQ(corner(), (std::vector<int>{255, 0, 0, 255}));
+}
+
 // A picture of one colour behind everything, as its corner shows it, in all encodings and with several
 // samples.
 TEST_F(SessionFiles, ImageBackgroundKeepsBitsRadianceAndAlpha) {

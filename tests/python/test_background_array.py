@@ -1,4 +1,4 @@
-"""Arrays as images behind everything."""
+"""Arrays and files as images behind everything."""
 
 import numpy as np
 import pytest
@@ -73,6 +73,21 @@ def test_wrong_arrays_leave_the_background_before(view):
         with pytest.raises(ValueError, match=message):
             easypbr.render(view.scene, size=SIZE, background=wrong)
     assert view.settings.background.image == "before.png" and view.settings.background.mode == "color"
+
+
+def test_files_that_are_no_images_leave_the_background_before(view, tmp_path):
+    view.load_background_image(np.full((4, 4, 3), 200, np.uint8))
+    (tmp_path / "text.png").write_text("no image")
+    for wrong, kind, message in (
+        (tmp_path / "missing.png", easypbr.FileError, "missing.png"),
+        (str(tmp_path / "missing.png"), easypbr.FileError, "missing.png"),
+        (tmp_path / "text.png", easypbr.FormatError, "text.png"),
+        (None, easypbr.ArgumentError, "background image: expected a path or an array, got None"),
+    ):
+        with pytest.raises(kind, match=message):
+            view.load_background_image(wrong)
+        assert view.settings.background.image == "" and view.settings.background.mode == "image"
+        assert view.render()[0, 0, 0] == 200
 
 
 def test_settings_say_what_they_do_not_hold(view, tmp_path, caplog):

@@ -435,6 +435,12 @@ void Session::load_environment(const std::filesystem::path& path) {
     settings_->environment.file = path.string();
 }
 
+void Session::load_background(const std::filesystem::path& path) {
+    files_.load_background(path);
+    settings_->background.image = path.string();
+    settings_->background.mode = BackgroundMode::image;
+}
+
 void Session::set_background(Image image) {
     files_.set_background(std::move(image));
     settings_->background.image.clear();

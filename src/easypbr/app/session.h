@@ -175,6 +175,9 @@ class Session {
     /// Lights the scene with a file: settings().environment.file, read at once. Throws FileError,
     /// FormatError.
     void load_environment(const std::filesystem::path& path);
+    /// Shows an image file behind everything: settings().background.mode is image, and background.image names
+    /// the file, read at once. Throws FileError, FormatError; then the background before stays.
+    void load_background(const std::filesystem::path& path);
     /// Shows an image behind everything: settings().background.mode is image, and background.image names no
     /// file. Throws ArgumentError when it is empty.
     void set_background(Image image);

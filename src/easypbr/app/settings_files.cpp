@@ -77,6 +77,10 @@ void SettingsFiles::load_environment(const std::filesystem::path& path) {
     environment_file_ = path.string();
 }
 
+void SettingsFiles::load_background(const std::filesystem::path& path) {
+    image_files_.read({path.string()});
+}
+
 void SettingsFiles::set_background(Image image) {
     if (image.empty()) throw ArgumentError("background image: expected pixels, got an empty image");
     background_ = std::make_shared<const Image>(std::move(image));

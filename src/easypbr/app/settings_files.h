@@ -57,6 +57,8 @@ class SettingsFiles {
     void load_shaders(const Settings& settings, const SceneSnapshot& scene);
     /// Reads the environment at once, even if it has been read before.
     void load_environment(const std::filesystem::path& path);
+    /// Reads a background image at once, where it is new or has changed. Throws FileError, FormatError.
+    void load_background(const std::filesystem::path& path);
     /// The background image where the settings name none; until they name one.
     void set_background(Image image);
 

@@ -378,6 +378,12 @@ void bind_viewer(nb::module_& module) {
             },
             nb::arg("path"))
         .def(
+            "load_background_image",
+            [](SharedViewer& self, const fs::path& path) {
+                self.run([&](Viewer& viewer) { viewer.load_background_image(path); });
+            },
+            nb::arg("path"))
+        .def(
             "set_background_image",
             [](SharedViewer& self, const ArrayLike& array) {
                 Image image = to_image(array, "background image");

@@ -428,6 +428,10 @@ void Viewer::load_environment_map(const std::filesystem::path& path) {
     parts_->session.load_environment(path);
 }
 
+void Viewer::load_background_image(const std::filesystem::path& path) {
+    parts_->session.load_background(path);
+}
+
 void Viewer::set_background_image(Image image) {
     parts_->session.set_background(std::move(image));
 }
