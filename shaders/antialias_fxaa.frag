@@ -4,11 +4,13 @@
 
 #feature EXACT has_exact_colors
 #feature ALPHA has_alpha  // the picture's background is transparent
+#feature LINES has_lines
 
 uniform sampler2D u_color;  // sRGB-encoded, straight alpha, linear filtering
 uniform vec2 u_size;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
+uniform sampler2D u_nearest_line;  // reversed depth; 0: no line covers half of the pixel
 
 layout(location = 0) out vec4 o_color;
 
@@ -53,6 +55,17 @@ float highest(vec4 corners, float middle) {
     return max(middle, max(max(corners.x, corners.y), max(corners.z, corners.w)));
 }
 
+/// Whether a line covers a part of the pixel. Lines are drawn smooth: what FXAA takes for their edges would break them where
+/// they cross.
+bool is_on_line(vec2 uv, vec2 texel) {
+    float nearest = 0.0;
+    nearest = highest(textureGather(u_nearest_line, uv + texel * vec2(-0.5, -0.5), 0), nearest);
+    nearest = highest(textureGather(u_nearest_line, uv + texel * vec2(0.5, -0.5), 0), nearest);
+    nearest = highest(textureGather(u_nearest_line, uv + texel * vec2(-0.5, 0.5), 0), nearest);
+    nearest = highest(textureGather(u_nearest_line, uv + texel * vec2(0.5, 0.5), 0), nearest);
+    return nearest > 0.0;
+}
+
 void main() {
     vec2 texel = 1.0 / u_size;
     vec2 uv = gl_FragCoord.xy * texel;
@@ -75,6 +88,11 @@ void main() {
     bool edge = high - low > max(1.0 / 16.0, high * 0.125);
     o_color = centre;
     if (!any_lane(edge)) return;
+    if (has_lines) {
+        bool on_line = is_on_line(uv, texel);
+        edge = edge && !on_line;
+        if (!any_lane(edge)) return;
+    }
 
     // corners: x y at the top, z w at the bottom
     vec2 along = vec2(corners.z + corners.w - corners.x - corners.y, corners.x + corners.z - corners.y - corners.w);

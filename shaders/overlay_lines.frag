@@ -119,7 +119,7 @@ void main() {
     if (!covered) discard;
     if (is_hidden(gl_FragCoord.xy, depth)) discard;
     if (is_depth_only) {
-        o_color = vec4(0.0);
+        o_color = vec4(depth);
         return;
     }
     if (is_behind_line(gl_FragCoord.xy, depth)) discard;

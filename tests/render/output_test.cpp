@@ -227,6 +227,47 @@ TEST(Output, FxaaSmoothsTransparentEdges) {
         }
 }
 
+/// Three lines that cross each other, before a square that fills the picture.
+Scene crossing_lines(bool with_lines) {
+    Scene scene;
+    scene.show(unlit(Vec3::Constant(0.5f)), "square");
+    if (!with_lines) return scene;
+    Array3f::Dense V(6, 3);
+    V << -1, 0.05f, 0.5f, 1, 0.05f, 0.5f, 0.05f, -1, 0.5f, 0.05f, 1, 0.5f, -1, -0.6f, 0.5f, 1, 0.8f, 0.5f;
+    Array2i::Dense E(3, 2);
+    E << 0, 1, 2, 3, 4, 5;
+    MeshData lines;
+    lines.V = Array3f(V);
+    lines.E = Array2i(E);
+    scene.show(Mesh(lines), "lines");
+    return scene;
+}
+
+// Lines are drawn smooth: FXAA changes no pixel that one covers a part of.
+TEST(Output, FxaaLeavesLinesAsTheyAre) {
+    for (const bool native : {true, false}) {
+        const auto drawn = [&](bool with_lines, Antialias antialias) {
+            app::Session session = plain_session(crossing_lines(with_lines));
+            session.allow_native_shading(native);
+            session.settings().image.antialias = antialias;
+            look_from(session, Vec3d(0, 0, 4));
+            return session.render();
+        };
+        const Image without = drawn(false, Antialias::none), sharp = drawn(true, Antialias::none),
+                    smooth = drawn(true, Antialias::fxaa);
+        size_t covered = 0, changed = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const int own = sharp.at<uint8_t>(x, y)[0];
+                if (own == without.at<uint8_t>(x, y)[0]) continue;
+                ++covered;
+                changed += own != smooth.at<uint8_t>(x, y)[0];
+            }
+        EXPECT_GT(covered, 300u) << "native " << native;  // three lines of 55 to 64 pixels, 1.5 wide
+        EXPECT_EQ(changed, 0u) << "native " << native;
+    }
+}
+
 TEST(Output, RefusesSizesThatCannotBe) {
     Scene scene;
     scene.show(make_sphere(), "sphere");

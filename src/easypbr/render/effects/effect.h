@@ -16,6 +16,7 @@ struct Glow;
 struct LitPicture {
     const Target* radiance = nullptr;  ///< as GBuffer::radiance
     const Target* overlay = nullptr;   ///< as GBuffer::overlay, where there is one
+    const Target* lines = nullptr;     ///< Primitive::nearest_lines(), where there are lines in the overlay
     const Glow* glow = nullptr;        ///< where bloom spreads light
     const Target* caught = nullptr;    ///< light of a shadow catcher, see GroundPass::caught()
     const GBuffer* guides = nullptr;   ///< for denoising, where layers change what the targets hold

@@ -358,7 +358,7 @@ void OutputPass::finish_by_driver(const Frame& frame, const LitPicture& lit, Bac
         state = limited_to(sum ? drawn_ : lit.covered, frame, lit);
     }
     display_.draw(values, state);
-    if (is_blurred(frame, encoding_)) blur_edges(frame, lit.covered, exact);
+    if (is_blurred(frame, encoding_)) blur_edges(frame, lit, exact);
 }
 
 void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
@@ -371,7 +371,7 @@ void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, Back
     picture_.write(picture_.whole());
     fill_around(picture_, area, background_code(frame, encoding_));
     display_.shade(values, {.target = &picture_, .area = area}, transfers_);
-    if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit.covered, exact);
+    if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit, exact);
 }
 
 void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers) {
@@ -397,11 +397,15 @@ void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GB
     exact_.draw(values, {});
 }
 
-ShaderInputs OutputPass::edge_inputs(const Frame& frame, const GBuffer* exact) const {
+ShaderInputs OutputPass::edge_inputs(const Frame& frame, const LitPicture& lit, const GBuffer* exact) const {
     ShaderInputs values;
     values.set("u_size", Vec2(frame.size.cast<float>()));
     values.set("u_color", aliased_);
     if (frame.resolved->settings.background.mode == BackgroundMode::transparent) values.define("ALPHA");
+    if (lit.lines) {
+        values.define("LINES");
+        values.set("u_nearest_line", *lit.lines);
+    }
     if (!exact) return values;
     values.define("EXACT");
     values.set("u_material", exact->material);
@@ -409,17 +413,20 @@ ShaderInputs OutputPass::edge_inputs(const Frame& frame, const GBuffer* exact) c
     return values;
 }
 
-void OutputPass::blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact) {
+void OutputPass::blur_edges(const Frame& frame, const LitPicture& lit, const GBuffer* exact) {
+    const PixelRect& area = lit.covered;
     if (area.width == 0 || area.height == 0) return;
     const gl::Texture& aliased = aliased_.drawn();
     aliased_.attachment().sampling(gl::Filtering::linear);
     gl::copy(picture_.texture(), aliased);
     framebuffer().bind();
     // Edges are where geometry is; the environment behind it is smooth.
-    fxaa_.draw(edge_inputs(frame, exact), screen_state(area));
+    if (lit.lines) lit.lines->upload(transfers_);
+    fxaa_.draw(edge_inputs(frame, lit, exact), screen_state(area));
 }
 
-void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact) {
+void OutputPass::blur_edges_natively(const Frame& frame, const LitPicture& lit, const GBuffer* exact) {
+    const PixelRect& area = lit.covered;
     if (area.width == 0 || area.height == 0) return;
     // As far as FXAA looks: half its span, and the filter.
     constexpr int reach = 6;
@@ -432,7 +439,7 @@ void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area, 
         const size_t at = (size_t(first) + i) * row;
         std::copy_n(from.data() + at, row, to.data() + at);
     });
-    fxaa_.shade(edge_inputs(frame, exact), {.target = &picture_, .area = area}, transfers_);
+    fxaa_.shade(edge_inputs(frame, lit, exact), {.target = &picture_, .area = area}, transfers_);
 }
 
 }  // namespace easypbr::render

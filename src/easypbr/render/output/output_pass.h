@@ -57,15 +57,15 @@ class OutputPass {
     gl::Format format() const { return picture_.format(); }
 
   private:
-    void blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact);
+    void blur_edges(const Frame& frame, const LitPicture& lit, const GBuffer* exact);
     /// What finish() reads; null: the radiance of the only frame, or the mean.
     const Target* sum_of(const Frame& frame) const;
     void finish_by_driver(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
                           const GBuffer* exact);
     void finish_natively(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
                          const GBuffer* exact);
-    void blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact);
-    ShaderInputs edge_inputs(const Frame& frame, const GBuffer* exact) const;
+    void blur_edges_natively(const Frame& frame, const LitPicture& lit, const GBuffer* exact);
+    ShaderInputs edge_inputs(const Frame& frame, const LitPicture& lit, const GBuffer* exact) const;
     /// Adds a frame of noisy light to a mean, before the tone curve.
     void add_radiance(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces, RadianceMean& mean);
     /// How such frames' mean is denoised.

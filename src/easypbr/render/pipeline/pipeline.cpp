@@ -98,6 +98,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
                    .covered = has_layers ? frame.covered : seen.covered,
                    .partly_covered = contents.ground && !frame.averages_radiance};
     if (has_layers) draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);
+    lit.lines = overlays_.nearest_lines(list.overlays);
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     draw_effects(frame, opaque, {.native = pass.empty(), .overlay_only = contents.only_layers}, lit);
     return lit;

@@ -34,6 +34,14 @@ void Overlays::draw_over(const Frame& frame, const ItemsByKind& items, const GBu
     run(frame, items, targets, {.part = OverlayPart::over});
 }
 
+const Target* Overlays::nearest_lines(const ItemsByKind& items) const {
+    const Target* found = nullptr;
+    for_each_kind(primitives_, items, [&](const Primitive& kind, DrawItems) {
+        if (const Target* lines = kind.nearest_lines()) found = lines;
+    });
+    return found;
+}
+
 void Overlays::run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step) {
     step.host = host_;
     step.by_gpu = by_gpu_;

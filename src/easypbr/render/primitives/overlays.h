@@ -20,6 +20,8 @@ class Overlays {
     /// Adds what lies behind a layer, or all that is left.
     void draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const GBuffer* next);
     void draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
+    /// Primitive::nearest_lines() of these items, since the beginning.
+    const Target* nearest_lines(const ItemsByKind& items) const;
 
   private:
     void run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step);

@@ -133,6 +133,9 @@ class Primitive {
     /// After the step `begin`: reversed depth of the nearest item in each pixel of the frame, row by row; 0
     /// where there is none. Empty: none anywhere, or the items lie around those of other kinds.
     virtual std::vector<float> overlay_depths() const { return {}; }
+    /// After the step `begin`, until the next one: R32F, reversed depth of the nearest line that covers half
+    /// of a pixel, 0 where there is none; null for kinds that draw no lines.
+    virtual const Target* nearest_lines() const { return nullptr; }
     /// Items lie before and behind those of other kinds in a pixel: they are drawn around them, in two parts.
     virtual bool lies_around() const { return false; }
 

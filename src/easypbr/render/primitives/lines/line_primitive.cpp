@@ -98,7 +98,7 @@ void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuf
     if (step.part == Part::begin) {
         opaque_ = step.opaque;
         has_last_ = false;
-        return step.host ? begin(frame, items, targets, *step.host) : begin(frame, items, targets);
+        return step.host ? begin(frame, items, targets, *step.host) : begin(frame, items);
     }
     if (step.part == Part::front) return;
     const Kind kind = step.part == Part::over ? Kind::over : Kind::ordered;
@@ -109,14 +109,16 @@ void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuf
     if (step.next) step.host ? keep_host_last(*step.next) : keep_last(*step.next);
 }
 
-void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets) {
+void LinePrimitive::begin(const Frame& frame, DrawItems items) {
     if (Vec2i(depth_.width(), depth_.height()) != frame.size) {
         depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
         last_depth_ = gl::Texture();
     }
-    framebuffer_.attach({&targets.overlay.drawn()}, &depth_);
-    in_host_memory_ = false;
+    if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
+    framebuffer_.attach({&nearest_.drawn()}, &depth_);
     framebuffer_.bind();
+    const float none[4] = {0, 0, 0, 0};
+    framebuffer_.clear_color(0, none);
     framebuffer_.clear_depth(0);
     draw_items(frame, items, Kind::nearest);
 }
@@ -140,13 +142,12 @@ void LinePrimitive::keep_host_last(const GBuffer& layer) {
 
 std::vector<float> LinePrimitive::overlay_depths() const {
     std::vector<float> depths;
-    Vec2i size = nearest_.size();
-    if (in_host_memory_) {
+    const Vec2i size = nearest_.size();
+    if (nearest_.is_ahead()) {
         depths = whole_depths(nearest_);
     } else {
-        size = Vec2i(depth_.width(), depth_.height());
         depths.resize(size_t(size.x()) * size_t(size.y()));
-        framebuffer_.read(0, gl::Format::depth32f, 0, 0, size.x(), size.y(),
+        framebuffer_.read(0, gl::Format::r32f, 0, 0, size.x(), size.y(),
                           std::as_writable_bytes(std::span(depths)));
     }
     widen_by_a_pixel(depths, size);
@@ -178,12 +179,11 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
     program.use();
     set_camera_uniforms(program, frame);
     bind_surfaces(program, next);
-    if (kind != Kind::nearest) depth_.bind(2);
+    if (kind != Kind::nearest) nearest_.bind(2);
     program.set("u_nearest_line", 2);
     program.set("u_table", int(table_unit));
     program.set("u_least_w", frame.orthographic() ? 0.5f : float(frame.camera.near));
-    const gl::DrawState nearest{
-        .depth_test = gl::DepthTest::greater_equal, .write_depth = true, .write_color = false};
+    const gl::DrawState nearest{.depth_test = gl::DepthTest::greater_equal, .write_depth = true};
     const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
     for (const DrawItem& item : items) {
         if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
@@ -201,7 +201,6 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
 }
 
 void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers) {
-    in_host_memory_ = true;
     if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
     nearest_.write(targets.overlay.area());
     std::ranges::fill(nearest_.pixels<float>(), 0.0f);

@@ -23,12 +23,13 @@ class LinePrimitive final : public Primitive {
     /// As far as lines reach at all: a pixel farther than those that they cover half of. Of lines thinner
     /// than a pixel some are missed.
     std::vector<float> overlay_depths() const override;
+    const Target* nearest_lines() const override { return &nearest_; }
     void evict_unused() override { cache_.evict_unused(); }
 
   private:
     enum class Kind { nearest, ordered, over };
     /// Finds the nearest line of each pixel.
-    void begin(const Frame& frame, DrawItems items, const GBuffer& targets);
+    void begin(const Frame& frame, DrawItems items);
     void begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers);
     void keep_last(const GBuffer& layer);
     void draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next = nullptr);
@@ -43,10 +44,9 @@ class LinePrimitive final : public Primitive {
     gpu::TextureCache& textures_;
     LineCache cache_;
     ProgramVariants programs_{"overlay_lines.vert", "overlay_lines.frag"};
-    Target nearest_;  ///< R32F, natively: reversed depth of the nearest line
-    gl::Texture depth_;
+    Target nearest_;     ///< R32F: reversed depth of the nearest line
+    gl::Texture depth_;  ///< by the driver, to find it
     gl::Framebuffer framebuffer_;
-    bool in_host_memory_ = false;     ///< where the nearest depths are
     const Target* opaque_ = nullptr;  ///< since begin()
     bool has_last_ = false;
     gl::Texture last_depth_;  ///< of the layer that was drawn last
