@@ -149,6 +149,27 @@ TEST(PathSurfaces, LampsShowNoFaces) {
     EXPECT_NEAR(brightest, 0.8, 0.02);  // where a face and the light meet at less than 12 degrees
 }
 
+// A flat surface that reflects all shows an even sky, though the normals of its vertices are turned from the
+// face by 80 degrees, or by 100. Nothing is bounced twice: no path that leaves the face meets it again.
+// 0.005: as of Paths.WhiteFurnace.
+TEST(PathSurfaces, NormalsMayTurnAwayFromTheFace) {
+    for (const double turned : {80.0, 100.0}) {
+        Mesh square = facing_square(1, matt(1));
+        Array3f::Dense N(4, 3);
+        const auto sine = float(std::sin(radians(turned))), cosine = float(std::cos(radians(turned)));
+        for (int i = 0; i < 4; ++i) N.row(i) = Eigen::RowVector3f(sine, 0, cosine);
+        square.set_N(Array3f(N));
+        Scene scene;
+        scene.show(square, "square");
+        scene.set_environment(constant_environment(1));
+        app::Session session = path_session(scene, 8);
+        session.settings().environment.enabled = true;
+        session.settings().path.bounces = 0;
+        look_from(session, Vec3d(-1, 0, 4), 10);
+        EXPECT_NEAR(mean_of(render_linear(session, 256)), 1, 0.02) << turned;
+    }
+}
+
 /// Red, of the middle of a picture.
 double mean_of_the_middle(const Image& image) {
     double sum = 0;

@@ -47,7 +47,8 @@ struct RayElement {
     int faces = 0;                                ///< of a mesh; 0: the elements are no faces
     const std::vector<Vec3>* vertices = nullptr;  ///< of faces
     const RayGaussians* gaussians = nullptr;
-    float unit = 1;          ///< RayScene::unit()
+    float unit = 1;                              ///< RayScene::unit()
+    Mat3 world_from_normals = Mat3::Identity();  ///< of faces: turns normals of the mesh, not to unit length
     float outwards = 1;      ///< -1: the normals of faces look into the volume that they bound
     bool is_closed = false;  ///< of faces that light passes: their mesh has no holes
 

@@ -41,6 +41,8 @@ struct RayScene::Scene final : RayGeometry {
         const DrawItem& item = *element.item;
         elements.push_back(std::make_unique<RayElement>(element));
         elements.back()->unit = float(1 / world_scale);
+        elements.back()->world_from_normals =
+            item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
         if (element.faces > 0 && item.material.transmits()) set_winding(*elements.back());
         rtcSetGeometryUserData(geometry.get(), elements.back().get());
         calls_back |= is_filtered(item) || element.gaussians;
@@ -255,6 +257,33 @@ std::array<Vec3, 3> RayScene::triangle(int surface, int face) const {
     return {corner(0), corner(1), corner(2)};
 }
 
+std::optional<std::array<Vec3, 3>> RayScene::corner_normals(const SurfacePlace& on) const {
+    if (on.surface < 0) return std::nullopt;
+    const RayElement& element = *scene_->elements[size_t(on.surface)];
+    const MeshData& mesh = element.item->mesh();
+    if (element.faces == 0 || element.item->style.flat || mesh.N.empty()) return std::nullopt;
+    std::array<Vec3, 3> normals;
+    for (int c = 0; c < 3; ++c) {
+        const Vec3 normal = element.world_from_normals * mesh.N.row(mesh.F(on.element, c)).transpose();
+        normals[size_t(c)] = normal.normalized();
+        if (!normals[size_t(c)].allFinite()) return std::nullopt;
+    }
+    return normals;
+}
+
+bool RayScene::has_normal(const SurfacePlace& on, const Vec3& face, const Vec3& normal) const {
+    constexpr float least = 0.3f;
+    if (face.dot(normal) > least) return true;
+    const auto corners = corner_normals(on);
+    if (!corners) return false;
+    const Vec3 mean = (1 - on.u - on.v) * (*corners)[0] + on.u * (*corners)[1] + on.v * (*corners)[2];
+    return std::abs(mean.dot(normal)) > least * mean.norm();
+}
+
+SurfacePlace RayScene::place_on(unsigned geometry, unsigned primitive, float u, float v) const {
+    return {int(geometry), scene_->elements[geometry]->of(primitive), u, v};
+}
+
 Vec3 RayScene::off_surface(const Vec3& at, const Vec3& away, const Vec3& reach) {
     return at + away * rounding(at.norm()) + reach;
 }
@@ -344,17 +373,17 @@ RaySegment ray_to(const RayScene::Place& place) {
 }  // namespace
 
 RayScene::Seen RayScene::seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
-                                 int surface) const {
+                                 const SurfacePlace& on) const {
     const Vec3 position = ray.from + ray.direction * distance;
-    if (face.dot(place.normal) > 0.3f) return {position, face, place.normal, reach(surface)};
+    if (has_normal(on, face, place.normal)) return {position, face, place.normal, reach(on.surface)};
     const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
-    return stands_before ? Seen{position, face, face, reach(surface)} : nothing_at(place);
+    return stands_before ? Seen{position, face, face, reach(on.surface)} : nothing_at(place);
 }
 
 RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {
     const RaySegment ray = ray_to(place);
     const auto hit = first_hit(ray, transmissive, false);
-    return hit ? seen_by(place, ray, hit->distance, hit->normal, hit->surface) : nothing_at(place);
+    return hit ? seen_by(place, ray, hit->distance, hit->normal, hit->on()) : nothing_at(place);
 }
 
 void RayScene::see(Places& places, Transmissive transmissive) const {
@@ -382,14 +411,15 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
             const RaySegment& ray = segments[i];
             const float to_ground = ground_distance(ray.from, ray.direction);
             if (to_ground < rays.ray.tfar[i])
-                put(first + i, seen_by(place, ray, to_ground, plane_.up, -1));
+                put(first + i, seen_by(place, ray, to_ground, plane_.up, {}));
             else if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
                 put(first + i, nothing_at(place));
             else
-                put(first + i, seen_by(place, ray, rays.ray.tfar[i],
-                                       towards_start({rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]},
-                                                     ray.direction),
-                                       int(rays.hit.geomID[i])));
+                put(first + i,
+                    seen_by(
+                        place, ray, rays.ray.tfar[i],
+                        towards_start({rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]}, ray.direction),
+                        place_on(rays.hit.geomID[i], rays.hit.primID[i], rays.hit.u[i], rays.hit.v[i])));
         }
     });
 }

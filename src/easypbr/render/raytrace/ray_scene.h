@@ -30,6 +30,13 @@ struct FaceRange {
     int first = 0, count = 0;
 };
 
+/// A place on an element of a surface.
+struct SurfacePlace {
+    int surface = -1;    ///< for RayScene::surface(); -1: the ground
+    int element = 0;     ///< face or vertex of the mesh
+    float u = 0, v = 0;  ///< barycentric coordinates of the face's second and third vertex
+};
+
 /// Where a ray ends.
 struct RayHit {
     const DrawItem* item = nullptr;  ///< null: the ground
@@ -39,6 +46,8 @@ struct RayHit {
     Vec3 position;                   ///< world, relative to RayScene::centre(), in RayScene::unit()
     Vec3 normal;                     ///< unit, of the element itself, towards where the ray came from
     float distance = 0;              ///< in RayScene::unit()
+
+    SurfacePlace on() const { return {surface, element, u, v}; }
 };
 
 /// A ray from a place in a unit direction, as far as `distance` (RayScene's frame).
@@ -185,9 +194,15 @@ class RayScene {
     void place_ground();
     /// What is seen where no surface is found.
     Seen nothing_at(const Place& place) const { return {place.position, place.normal, place.normal, reach_}; }
-    /// `hit`: what a ray to the place has met, after `distance`.
+    /// What a ray to the place has met, after `distance`.
     Seen seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
-                 int surface) const;
+                 const SurfacePlace& on) const;
+    /// Unit normals of the corners of a face of a mesh; none where it has no others than its own.
+    std::optional<std::array<Vec3, 3>> corner_normals(const SurfacePlace& on) const;
+    /// Whether a normal is one of the surface, and no other's that a pixel has by rounding. An interpolated
+    /// one may lie on any side of its face.
+    bool has_normal(const SurfacePlace& on, const Vec3& face, const Vec3& normal) const;
+    SurfacePlace place_on(unsigned geometry, unsigned primitive, float u, float v) const;
 
     std::unique_ptr<Scene> scene_;
     std::optional<RayGround> ground_;
