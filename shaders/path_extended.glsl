@@ -88,8 +88,11 @@ vec3 reflected(vec3 l, Surface s) {
     return above_face(scattered_above(l, s) + scattered_above(mirrored_at_face(l), s), l, s);
 }
 
-// As that of path_plain.glsl.
-vec3 reflected_unmirrored(vec3 l, Surface s) { return above_face(scattered_above(l, s), l, s); }
+// As that of path_plain.glsl. What lets light pass has it from below the face, too.
+vec3 reflected_unmirrored(vec3 l, Surface s) {
+    vec3 light = scattered_above(l, s);
+    return is_inside() || s.extension.transmission > 0.0 ? above_face(light, l, s) : light;
+}
 
 // Parts of the directions; the others are those of a cosine.
 struct Lobes {

@@ -13,18 +13,21 @@ Surface path_surface() {
     return s;
 }
 
-// `light` of a direction above the face.
-vec3 above_face(vec3 light, vec3 l, Surface s) {
+// What a surface makes of `light`.
+vec3 seen_of(vec3 light, vec3 l, Surface s) {
     if (catches_shadows) light = vec3(max(dot(s.normal, l), 0.0) * inverse_pi);
-    return dot(l, v_face) > 0.0 ? light : vec3(0.0);
+    return light;
 }
+
+// `light` of a direction above the face.
+vec3 above_face(vec3 light, vec3 l, Surface s) { return dot(l, v_face) > 0.0 ? seen_of(light, l, s) : vec3(0.0); }
 
 // Light from a direction above the face into the view: the BRDF times the cosine.
 vec3 reflected(vec3 l, Surface s) { return above_face(scattered(l, s) + scattered(mirrored_at_face(l), s), l, s); }
 
-// Of a light without an area, without what is mirrored at the face: light of a single direction would show the faces where
-// interpolated normals turn away from it.
-vec3 reflected_unmirrored(vec3 l, Surface s) { return above_face(scattered(l, s), l, s); }
+// Of a light without an area, by the normal alone: light of a single direction would show the faces where interpolated
+// normals turn away from it, or towards it. Rays find whether a face hides it.
+vec3 reflected_unmirrored(vec3 l, Surface s) { return seen_of(scattered(l, s), l, s); }
 
 // Which part of the directions is chosen by the specular lobe.
 float specular_part(Surface s) {

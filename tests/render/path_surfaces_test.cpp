@@ -1,8 +1,10 @@
 // Path tracing at the borders of surfaces: where rays start, and what lies below interpolated normals.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
+#include "easypbr/render/raytrace/smooth_surface.h"
 #include "render_test.h"
 
 namespace easypbr::path_surfaces_test {
@@ -88,8 +90,8 @@ TEST(PathSurfaces, CloudsLeaveContactsOfMeshesAlone) {
     }
 }
 
-// Lambert with a mapped normal: lamps bring n . l, and nothing of what lies below the face. 0.01: 8 bits of
-// the normal texture.
+// Lambert with a mapped normal: lamps bring n . l, but for those below the face, which hides them though the
+// normal is turned to them. 0.01: 8 bits of the normal texture.
 TEST(PathSurfaces, LampsOnMappedNormals) {
     const double tilt = radians(55);
     Image normals(2, 2, 3, PixelType::u8);
@@ -118,35 +120,61 @@ TEST(PathSurfaces, LampsOnMappedNormals) {
             const Vec3 wanted(float(std::sin(tilt)), 0, float(std::cos(tilt)));
             EXPECT_LT((Vec3(layer.at<float>(4, 4)) - wanted).norm(), 0.01f) << flat;
         }
+        shine(scene, Vec3(-1, 0, 0.2f).normalized());
+        app::Session from_below = path_session(scene, 8);
+        look_from(from_below, Vec3d(0, 0, 4), 10);
+        EXPECT_EQ(render_linear(from_below, 16).at<float>(4, 4)[0], 0);
     }
 }
 
-// A coarse ball with interpolated normals is nowhere brighter than the cosine makes it: no face stands out.
-// 0.004: roundings of normals and colours to 8 and 16 bits.
+// A coarse ball with interpolated normals is as bright as the cosine makes it: no face stands out, and none
+// hides the light from itself where it is turned away by up to 13 degrees more than its normals, of a light
+// of up to 0.18. 0.004: roundings of normals and colours to 8 and 16 bits. 0.02: what a pixel's samples see
+// of a face in other places.
 TEST(PathSurfaces, LampsShowNoFaces) {
-    Mesh ball = make_sphere(1, 12);
-    Material m = matt(0.8f);
-    m.specular = 0;
-    ball.set_material(m);
-    Scene scene;
-    scene.show(ball, "ball");
-    shine(scene, Vec3(-1, 0, -0.3f).normalized());
-    app::Session session = path_session(scene, 64);
-    look_from(session, Vec3d(0, 0, 5), 25);
-    const Image traced = render_linear(session, 8);
-    session.settings().path.enabled = false;
-    session.settings().shadows.enabled = false;
-    const Image cosines = render_linear(session);
-    float brighter = 0, brightest = 0;
-    for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) {
-            const Vec4 a(traced.at<float>(x, y)), b(cosines.at<float>(x, y));
-            if (a.w() < 1 || b.w() < 1) continue;
-            brighter = std::max(brighter, a.x() - b.x());
-            brightest = std::max(brightest, a.x());
-        }
-    EXPECT_LT(brighter, 0.004);
-    EXPECT_NEAR(brightest, 0.8, 0.02);  // where a face and the light meet at less than 12 degrees
+    const std::function<void(Material&)> extended = [](Material&m) { m.specular = 0; },
+                                         plain = [](Material&) {};
+    for (const auto& change : {extended, plain}) {
+        Mesh ball = make_sphere(1, 12);
+        Material m = matt(0.8f);
+        change(m);
+        ball.set_material(m);
+        Scene scene;
+        scene.show(ball, "ball");
+        shine(scene, Vec3(-1, 0, -0.3f).normalized());
+        app::Session session = path_session(scene, 64);
+        session.settings().shading.dielectric_f0 = 0;
+        look_from(session, Vec3d(0, 0, 5), 25);
+        const Image traced = render_linear(session, 8);
+        session.settings().path.enabled = false;
+        session.settings().shadows.enabled = false;
+        const Image cosines = render_linear(session, 8);
+        float brighter = 0, darker = 0, brightest = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const Vec4 a(traced.at<float>(x, y)), b(cosines.at<float>(x, y));
+                if (a.w() < 1 || b.w() < 1) continue;
+                brighter = std::max(brighter, a.x() - b.x());
+                darker = std::max(darker, b.x() - a.x());
+                brightest = std::max(brightest, a.x());
+            }
+        EXPECT_LT(brighter, 0.004);
+        EXPECT_LT(darker, 0.02);
+        // Where a face and the light meet at less than 12 degrees; plain surfaces mirror some of it.
+        EXPECT_NEAR(brightest, 0.77, 0.05);
+    }
+}
+
+// The surface at right angles to the normals of an octant's corners is below the unit sphere: from the
+// middle, (1, 1, 1) / 3, each corner's plane is 2/3 away, so that the mean of the places on them is (1, 1, 1)
+// 5/9. A hollow triangle's lies below it. 1e-6: roundings.
+TEST(PathSurfaces, SmoothSurfacesOfTriangles) {
+    const std::array<Vec3, 3> corners{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+    const Vec3 way = render::to_smooth_surface(corners, corners, 1 / 3.0f, 1 / 3.0f);
+    EXPECT_LT((way - Vec3::Constant(2 / 9.0f)).norm(), 1e-6f);
+    EXPECT_LT(render::to_smooth_surface(corners, corners, 1, 0).norm(), 1e-6f);  // at a corner
+    const std::array<Vec3, 3> inwards{-Vec3::UnitX(), -Vec3::UnitY(), -Vec3::UnitZ()};
+    EXPECT_EQ(render::to_smooth_surface(corners, inwards, 1 / 3.0f, 1 / 3.0f).norm(), 0);
 }
 
 // A flat surface that reflects all shows an even sky, though the normals of its vertices are turned from the

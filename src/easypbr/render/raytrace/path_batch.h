@@ -120,6 +120,7 @@ struct PathBatch {
           face(rounded_up(capacity)),
           view(rounded_up(capacity)),
           reach(rounded_up(capacity)),
+          on(rounded_up(capacity)),
           albedo(rounded_up(capacity)),
           parameters(rounded_up(capacity)),
           state(rounded_up(capacity)),
@@ -191,6 +192,7 @@ struct PathBatch {
     PathVectors<3> face;       ///< of the element itself, towards where the path comes from
     PathVectors<3> view;       ///< unit, back along the path
     std::vector<float> reach;  ///< RayScene::reach() of the surfaces
+    std::vector<SurfacePlace> on;
     PathVectors<3> albedo;
     PathVectors<2> parameters;  ///< metallic, roughness
     std::vector<PathState> state;

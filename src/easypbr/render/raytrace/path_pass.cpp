@@ -198,6 +198,7 @@ struct PathPass::Block {
         batch.face = std::move(seen.face);
         batch.view = std::move(seen.view);
         batch.reach = std::move(seen.reach);
+        batch.on = std::move(seen.on);
         for (size_t i = 0; i < count; ++i) batch.set_state(i, pixels.state_of(x[i], y[i], index[i]));
     }
 

@@ -29,6 +29,8 @@ constexpr uint16_t sure_passages = 16;
 constexpr float widest_density = 4;
 /// Mirrors show what they face as it is up to so many times the limit: the sun by way of two of them is rare.
 constexpr float narrow_light = 40;
+/// Cosine between a face and a lamp's direction from which on down rays to the lamp start above the face.
+constexpr float terminator = 0.1f;
 /// Of directions that are the only ones.
 constexpr float only_direction = 1e30f;
 
@@ -183,6 +185,15 @@ Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& 
     return RayScene::off_surface(batch.position.at(path), -face, -face * batch.reach[path]);
 }
 
+Vec3 PathTracer::start_to_lamp(const PathBatch& batch, size_t path, const Vec3& direction) const {
+    if (batch.extensions && batch.extensions->volume.at(path).x() > 0)
+        return start_towards(batch, path, direction);
+    const Vec3 face = batch.face.at(path);
+    const float part = std::clamp(1 - direction.dot(face) / terminator, 0.0f, 1.0f);
+    if (part == 0) return batch.start.at(path);
+    return batch.start.at(path) + part * scene_->to_smooth(batch.on[path], face);
+}
+
 void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const {
     const std::vector<SkySampler::Sample> skies = sky_.seen(paths.directions, paths.densities);
     for (size_t i = 0; i < skies.size(); ++i) {
@@ -275,7 +286,7 @@ void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight
     for (size_t i = 0; i < batch.count; ++i) {
         if (!(lamps[i].all > 0)) continue;
         RaySegment ray = lights_.towards(lamps[i], batch.position.at(i));
-        ray.from = start_towards(batch, i, ray.direction);
+        ray.from = start_to_lamp(batch, i, ray.direction);
         rays.push_back(ray);
         lights.push_back(lamps[i].index);
         paths.push_back(uint32_t(i));
@@ -410,6 +421,7 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
     to.face.set(at, surfaces.face.at(i));
     to.view.set(at, -hit.direction);
     to.reach[at] = scene.reach(hit.hit.surface);
+    to.on[at] = hit.hit.on();
     to.albedo.set(at, surfaces.albedo.at(i));
     to.parameters.set(at, surfaces.parameters.at(i));
     PathState state = hit.state;

@@ -52,6 +52,9 @@ class PathTracer {
     struct Batches;
     /// Where rays in a direction start, which may go through the surface.
     Vec3 start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const;
+    /// The same of rays to lamps. Where their light grazes a face it may come from below it, though not from
+    /// below the interpolated normal: they start at the smooth surface there.
+    Vec3 start_to_lamp(const PathBatch& batch, size_t path, const Vec3& direction) const;
     /// One step of all paths of a batch: `hits` gets the surfaces that they meet next.
     void step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits, PathRadiance& radiance) const;
     void scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const;

@@ -11,6 +11,7 @@
 #include "easypbr/gpu/facing.h"
 #include "easypbr/render/raytrace/embree_scene.h"
 #include "easypbr/render/raytrace/ray_callbacks.h"
+#include "easypbr/render/raytrace/smooth_surface.h"
 
 namespace easypbr::render {
 namespace {
@@ -257,6 +258,14 @@ std::array<Vec3, 3> RayScene::triangle(int surface, int face) const {
     return {corner(0), corner(1), corner(2)};
 }
 
+Vec3 RayScene::to_smooth(const SurfacePlace& on, const Vec3& face) const {
+    auto normals = corner_normals(on);
+    if (!normals) return Vec3::Zero();
+    for (Vec3& normal : *normals)
+        if (normal.dot(face) < 0) normal = -normal;
+    return to_smooth_surface(triangle(on.surface, on.element), *normals, on.u, on.v);
+}
+
 std::optional<std::array<Vec3, 3>> RayScene::corner_normals(const SurfacePlace& on) const {
     if (on.surface < 0) return std::nullopt;
     const RayElement& element = *scene_->elements[size_t(on.surface)];
@@ -375,9 +384,9 @@ RaySegment ray_to(const RayScene::Place& place) {
 RayScene::Seen RayScene::seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
                                  const SurfacePlace& on) const {
     const Vec3 position = ray.from + ray.direction * distance;
-    if (has_normal(on, face, place.normal)) return {position, face, place.normal, reach(on.surface)};
+    if (has_normal(on, face, place.normal)) return {position, face, place.normal, reach(on.surface), on};
     const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
-    return stands_before ? Seen{position, face, face, reach(on.surface)} : nothing_at(place);
+    return stands_before ? Seen{position, face, face, reach(on.surface), {}} : nothing_at(place);
 }
 
 RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {
@@ -392,6 +401,7 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
         places.face.set(i, seen.face);
         places.normal.set(i, seen.normal);
         places.reach[i] = seen.reach;
+        places.on[i] = seen.on;
     };
     if (!scene_ || scene_->calls_back) {
         for (size_t i = 0; i < places.count; ++i) put(i, seen_at(places.at(i), transmissive));

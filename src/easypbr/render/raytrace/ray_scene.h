@@ -130,6 +130,10 @@ class RayScene {
 
     const std::optional<RayGround>& ground() const { return ground_; }
 
+    /// From a place on a face of a mesh to the smooth surface that its normals tell of, on the side of the
+    /// unit vector `face`: see smooth_surface.h. 0 of all else.
+    Vec3 to_smooth(const SurfacePlace& on, const Vec3& face) const;
+
     /// The first surface in the direction (unit); safe to call from several threads, as are the others.
     /// Gaussians stop the part of the rays that their opacity is, by a hash of the ray; there the normal is
     /// opposite to the direction.
@@ -141,6 +145,7 @@ class RayScene {
         Vec3 face;        ///< normal of the element itself: the interpolated one lies above it or below
         Vec3 normal;      ///< the interpolated one, but for a surface that stands before the place
         float reach = 0;  ///< of the surface; the largest one where it is not found
+        SurfacePlace on;  ///< -1 where the normal is not interpolated
     };
     /// A pixel's surface as the rasteriser has it.
     struct Place {
@@ -160,7 +165,8 @@ class RayScene {
               view(position.room()),
               face(position.room()),
               footprint(position.room()),
-              reach(position.room()) {}
+              reach(position.room()),
+              on(position.room()) {}
 
         Place at(size_t i) const { return {position.at(i), normal.at(i), view.at(i), footprint[i]}; }
 
@@ -168,7 +174,8 @@ class RayScene {
         PathVectors<3> position, normal, view;
         PathVectors<3> face;  ///< of what is seen
         std::vector<float> footprint;
-        std::vector<float> reach;  ///< of what is seen
+        std::vector<float> reach;      ///< of what is seen
+        std::vector<SurfacePlace> on;  ///< likewise
     };
     /// The same of many places: puts what is seen there in their stead. Of neighbours in a part of the time.
     void see(Places& places, Transmissive transmissive) const;
@@ -193,7 +200,9 @@ class RayScene {
 
     void place_ground();
     /// What is seen where no surface is found.
-    Seen nothing_at(const Place& place) const { return {place.position, place.normal, place.normal, reach_}; }
+    Seen nothing_at(const Place& place) const {
+        return {place.position, place.normal, place.normal, reach_, {}};
+    }
     /// What a ray to the place has met, after `distance`.
     Seen seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
                  const SurfacePlace& on) const;
