@@ -140,6 +140,35 @@ TEST(GBuffer, GivenNormalsSurviveWrongWinding) {
     EXPECT_GT(n.cast<double>().dot(to_camera), 0.99);
 }
 
+// Without normals of their own, faces that are wound the wrong way round look as their neighbours do.
+TEST(GBuffer, InferredNormalsSurviveWrongWindingOfSomeFaces) {
+    for (const bool native : {true, false}) {
+        const auto normals = [&](int turned_of_seven) {
+            Mesh mesh = make_sphere(1, 64);
+            mesh.edit([&](MeshData& data) {
+                Array3i::Dense F = data.F;
+                for (Eigen::Index f = 0; f < F.rows(); ++f)
+                    if (f % 7 < turned_of_seven) std::swap(F(f, 1), F(f, 2));
+                data.F = std::move(F);
+                data.N = {};
+            });
+            Scene scene;
+            scene.show(mesh, "sphere");
+            app::Session session = plain_session(scene);
+            session.allow_native_shading(native);
+            return session.render_layers({"normal_world"}).at("normal_world");
+        };
+        const Image right = normals(0), some = normals(1);
+        ASSERT_EQ(right.pixel_count(), some.pixel_count());
+        for (size_t i = 0; i < right.pixel_count(); ++i) {
+            const Vec3 n(right.pixels<float>().data() + 3 * i), m(some.pixels<float>().data() + 3 * i);
+            // Two octahedral encodings of a vertex and a pixel, of 0.004 degrees each.
+            if (n.squaredNorm() == 0) continue;
+            ASSERT_GT(n.dot(m), std::cos(radians(0.05))) << i << ' ' << native;
+        }
+    }
+}
+
 TEST(GBuffer, FlatShadingGivesOneNormalPerFace) {
     Scene scene;
     scene.show(make_sphere(1, 8), "sphere");

@@ -1,6 +1,7 @@
 #include "easypbr/scene/crease.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <vector>
@@ -32,6 +33,34 @@ MeshData folded(double angle_deg) {
     mesh.V = Array3f::Dense{{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 0}, {x, 0, z}, {0, 1, 0}};
     mesh.F = Array3i::Dense{{0, 1, 2}, {3, 4, 5}};
     mesh.source_vertex = Array1i::Dense{{0}, {1}, {2}, {0}, {3}, {1}};
+    return mesh;
+}
+
+/// A closed torus without seams: 100 x 50 quads, neighbours at 3.6 and 7.2 degrees at most.
+MeshData torus() {
+    constexpr int around = 100, across = 50;
+    Array3f::Dense V(around * across, 3);
+    Array3i::Dense F(2 * around * across, 3);
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j < across; ++j) {
+            const double a = 2 * pi * i / around, b = 2 * pi * j / across, r = 1 + 0.4 * std::cos(b);
+            const auto at = [&](int di, int dj) { return (i + di) % around * across + (j + dj) % across; };
+            V.row(at(0, 0)) << float(r * std::cos(a)), float(r * std::sin(a)), float(0.4 * std::sin(b));
+            F.row(2 * at(0, 0)) << at(0, 0), at(1, 0), at(1, 1);
+            F.row(2 * at(0, 0) + 1) << at(0, 0), at(1, 1), at(0, 1);
+        }
+    MeshData mesh;
+    mesh.V = std::move(V);
+    mesh.F = std::move(F);
+    return mesh;
+}
+
+/// The same with every seventh face wound the other way round.
+MeshData partly_turned(const MeshData& whole) {
+    Array3i::Dense F = whole.F;
+    for (Eigen::Index f = 0; f < F.rows(); f += 7) std::swap(F(f, 1), F(f, 2));
+    MeshData mesh = whole;
+    mesh.F = std::move(F);
     return mesh;
 }
 
@@ -74,6 +103,125 @@ TEST(Creases, VerticesSplitFromOneCountAsOne) {
         // Soft: the same normal, which is copied; sharp: the faces' own, to a few roundings.
         EXPECT_NEAR(across, fold < 30 ? 1 : std::cos(radians(fold)), 1e-6) << fold;
     }
+}
+
+TEST(Creases, OfASmoothMeshAreNone) {
+    const MeshData whole = torus();
+    MeshData mesh = whole;
+    EXPECT_TRUE(find_creases(mesh, 60).empty());
+    const std::vector<int32_t> rows = split_creases(mesh, 60);
+    EXPECT_EQ(mesh.V.revision(), whole.V.revision());
+    EXPECT_EQ(mesh.F.revision(), whole.F.revision());
+    EXPECT_TRUE(mesh.source_vertex.empty());
+    EXPECT_TRUE((mesh.N.array() == vertex_normals(whole.V, whole.F).array()).all());
+    ASSERT_EQ(rows.size(), size_t(whole.V.rows()));
+    EXPECT_EQ(rows.back(), int32_t(rows.size()) - 1);
+}
+
+TEST(Creases, NoiseOfAScanIsSmooth) {
+    // Heights within 0.1 of the plane at distances of 1: slopes up to 0.2 along both axes, faces up to
+    // atan(0.2 sqrt(2)) = 15.8 degrees from the plane, and so 31.6 degrees from each other.
+    constexpr int side = 60;
+    Array3f::Dense V(side * side, 3);
+    uint32_t state = 1;
+    for (int i = 0; i < side * side; ++i) {
+        state = state * 1664525u + 1013904223u;
+        V.row(i) << float(i % side), float(i / side), 0.2f * float(state >> 8) / float(1 << 24) - 0.1f;
+    }
+    std::vector<Eigen::RowVector3i> faces;
+    for (int y = 0; y + 1 < side; ++y)
+        for (int x = 0; x + 1 < side; ++x) {
+            const int i = y * side + x;
+            faces.emplace_back(i, i + 1, i + side);
+            faces.emplace_back(i + 1, i + side + 1, i + side);
+        }
+    Array3i::Dense F(Eigen::Index(faces.size()), 3);
+    for (size_t f = 0; f < faces.size(); ++f) F.row(Eigen::Index(f)) = faces[f];
+    MeshData mesh;
+    mesh.V = std::move(V);
+    mesh.F = std::move(F);
+    EXPECT_TRUE(find_creases(mesh, 60).empty());
+}
+
+TEST(Creases, AFaceWoundTheWrongWayHasItsOwnSide) {
+    MeshData mesh = cube();
+    Array3i::Dense F = mesh.F;
+    std::swap(F(0, 1), F(0, 2));
+    mesh.F = std::move(F);
+    const MeshData before = mesh;
+    split_creases(mesh, 60);
+    EXPECT_NO_THROW(validate(mesh));
+    EXPECT_EQ(mesh.V.rows(), 6 * 4 + 2) << "the two vertices where the halves of its side meet, once more";
+    const Array3f sides = face_normals(before.V, before.F);
+    for (Eigen::Index f = 0; f < 12; ++f)
+        // Sums of multiples of one unit vector along an axis, normalised: exact.
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(mesh.N.row(mesh.F(f, k)), sides.row(f)) << f;
+}
+
+TEST(Creases, FacesWoundAgainstEachOtherHaveOneNormalAndItsOpposite) {
+    const MeshData whole = torus();
+    const Array3f N = vertex_normals(whole.V, whole.F);
+    Array3i::Dense both(2 * whole.F.rows(), 3);
+    both.topRows(whole.F.rows()) = whole.F;
+    for (int k = 0; k < 3; ++k) both.col(k).tail(whole.F.rows()) = whole.F.col(2 - k);
+    MeshData doubled = whole;
+    doubled.F = std::move(both);
+    for (const float angle : {60.0f, 180.0f})
+        for (const MeshData& given : {partly_turned(whole), doubled}) {
+            MeshData mesh = given;
+            const std::vector<int32_t> rows = split_creases(mesh, angle);
+            EXPECT_NO_THROW(validate(mesh));
+            const Array3f faces = face_normals(given.V, given.F);
+            double worst = 1;
+            for (Eigen::Index f = 0; f < mesh.F.rows(); ++f)
+                for (int k = 0; k < 3; ++k) {
+                    const int32_t row = mesh.F(f, k);
+                    ASSERT_EQ(rows[size_t(row)], given.F(f, k));
+                    const float smooth = mesh.N.row(row).dot(N.row(rows[size_t(row)]));
+                    worst = std::min(worst, std::abs(double(smooth)));
+                    ASSERT_GT(mesh.N.row(row).dot(faces.row(f)), 0) << "the side that the winding tells";
+                }
+            // The same sums in another order: a few roundings of 6e-8.
+            EXPECT_GT(worst, 1 - 2e-6) << angle;
+        }
+}
+
+TEST(Creases, FacesFoldedOntoEachOtherShareNoNormal) {
+    for (const float angle : {60.0f, 180.0f}) {
+        MeshData mesh;
+        mesh.V = Array3f::Dense{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        mesh.F = Array3i::Dense{{0, 1, 2}, {0, 2, 1}};
+        split_creases(mesh, angle);
+        ASSERT_EQ(mesh.V.rows(), 6);
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_EQ(Vec3(mesh.N.row(mesh.F(0, k))), Vec3(1, 0, 0));
+            EXPECT_EQ(Vec3(mesh.N.row(mesh.F(1, k))), Vec3(-1, 0, 0));
+        }
+    }
+}
+
+TEST(Creases, DoNotDependOnTheNumberOfThreads) {
+    const MeshData given = partly_turned(torus());
+    MeshData one = given, several = given;
+    tbb::task_arena(1).execute([&] { split_creases(one, 60); });
+    tbb::task_arena(4).execute([&] { split_creases(several, 60); });
+    EXPECT_TRUE((one.F.array() == several.F.array()).all());
+    EXPECT_TRUE((one.N.array() == several.N.array()).all());
+}
+
+TEST(Creases, HoldForOtherPositions) {
+    const Creases creases = find_creases(cube(), 60);
+    MeshData mesh = cube();
+    // Sheared by 70 degrees: edges at 20 degrees stay sharp, too.
+    Array3f::Dense V = mesh.V;
+    V.col(0) += std::tan(float(radians(70.0))) * mesh.V.col(2);
+    mesh.V = std::move(V);
+    const Array3f faces = face_normals(mesh.V, mesh.F);
+    split_creases(mesh, creases);
+    ASSERT_EQ(mesh.V.rows(), 24);
+    for (Eigen::Index f = 0; f < 12; ++f)
+        // Both halves of a parallelogram have the same normal, to a few roundings.
+        for (int k = 0; k < 3; ++k) EXPECT_GT(mesh.N.row(mesh.F(f, k)).dot(faces.row(f)), 1 - 1e-6f) << f;
 }
 
 TEST(Creases, OfAMeshAndItsChildrenWithoutNormals) {

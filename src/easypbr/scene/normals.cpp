@@ -5,12 +5,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/directions.h"
 #include "easypbr/scene/mesh_arrays.h"
+#include "easypbr/scene/normal_sums.h"
 
 namespace easypbr {
 
@@ -181,22 +183,31 @@ class Accumulator {
     std::vector<Bin> bins_;
 };
 
-/// The direction of a vector, in double precision so that no area is too small for it.
 }  // namespace
 
-Array3f vertex_normals(const Array3f& V, const Array3i& F) {
+Array3f::Dense detail::normal_sums(const Array3f& V, const Array3i& F) {
     require_faces(F, V.rows());
     constexpr size_t grain = size_t(1) << 16;
-    Array3f::Dense N(V.rows(), 3);
-    parallel_chunks(size_t(N.size()), grain,
-                    [&](size_t begin, size_t end) { std::fill(N.data() + begin, N.data() + end, 0.0f); });
-    Accumulator(V, F, N.data()).add_all();
-    parallel_for(size_t(N.rows()), grain, [&](size_t v) {
-        N.row(Eigen::Index(v)) = detail::direction_or_z(N.row(Eigen::Index(v)).transpose().cast<double>())
-                                     .cast<float>()
-                                     .transpose();
+    Array3f::Dense sums(V.rows(), 3);
+    parallel_chunks(size_t(sums.size()), grain, [&](size_t begin, size_t end) {
+        std::fill(sums.data() + begin, sums.data() + end, 0.0f);
     });
-    return N;
+    Accumulator(V, F, sums.data()).add_all();
+    return sums;
+}
+
+Array3f detail::directions(Array3f::Dense vectors) {
+    constexpr size_t grain = size_t(1) << 16;
+    // In double precision, so that no area is too small.
+    parallel_for(size_t(vectors.rows()), grain, [&](size_t v) {
+        vectors.row(Eigen::Index(v)) =
+            direction_or_z(vectors.row(Eigen::Index(v)).transpose().cast<double>()).cast<float>().transpose();
+    });
+    return Array3f(std::move(vectors));
+}
+
+Array3f vertex_normals(const Array3f& V, const Array3i& F) {
+    return detail::directions(detail::normal_sums(V, F));
 }
 
 Array3f face_normals(const Array3f& V, const Array3i& F) {
@@ -213,20 +224,24 @@ Array3f face_normals(const Array3f& V, const Array3i& F) {
     return N;
 }
 
-Array3f smooth_normals(const MeshData& mesh) {
+detail::UnitedMesh::UnitedMesh(const MeshData& mesh) : V(mesh.V), F(mesh.F) {
     const Array1i& source = mesh.source_vertex;
-    if (source.empty()) return vertex_normals(mesh.V, mesh.F);
+    if (source.empty()) return;
     require_faces(mesh.F, source.rows());
-    const auto count = size_t(mesh.V.rows());
-    Array3f::Dense V = Array3f::Dense::Zero(source.maxCoeff() + 1, 3);
-    for (size_t i = 0; i < count; ++i) V.row(source[Eigen::Index(i)]) = mesh.V.row(Eigen::Index(i));
-    Array3i::Dense F(mesh.F.rows(), 3);
-    parallel_for(size_t(F.size()), normals_grain, [&](size_t i) { F.data()[i] = source[mesh.F.data()[i]]; });
-    const Array3f united = vertex_normals(Array3f(std::move(V)), Array3i(std::move(F)));
-    Array3f::Dense N(mesh.V.rows(), 3);
-    parallel_for(count, normals_grain,
-                 [&](size_t i) { N.row(Eigen::Index(i)) = united.row(source[Eigen::Index(i)]); });
-    return N;
+    Array3f::Dense places = Array3f::Dense::Zero(source.maxCoeff() + 1, 3);
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) places.row(source[i]) = mesh.V.row(i);
+    Array3i::Dense faces(mesh.F.rows(), 3);
+    parallel_for(size_t(faces.size()), normals_grain,
+                 [&](size_t i) { faces.data()[i] = source[mesh.F.data()[i]]; });
+    V = std::move(places);
+    F = std::move(faces);
+}
+
+Array3f smooth_normals(const MeshData& mesh) {
+    const detail::UnitedMesh united(mesh);
+    const Array3f normals = vertex_normals(united.V, united.F);
+    const Array1i& source = mesh.source_vertex;
+    return source.empty() ? normals : rows_of(normals, {source.data(), size_t(source.size())});
 }
 
 }  // namespace easypbr

@@ -241,6 +241,12 @@ std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const
     return mesh;
 }
 
+void DrawableCache::evict_unused() {
+    entries_.evict_unused();
+    creases_.evict_unused();
+    kept_creases_.evict_unused();
+}
+
 DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const InferredSettings& settings) {
     require_colors(scene, settings.style);
     const size_t count = scene.objects.size();
@@ -263,9 +269,9 @@ void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredS
     if (!style.visible || own.mesh->V.empty()) return;
     const std::vector<Eigen::Vector4d> planes = planes_of(settings.clip, own.T_world_mesh);
     const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
+    const std::shared_ptr<const MeshData> given = own.mesh;
     ElementSources split;
-    if (style.mode == DrawMode::mesh && !style.flat)
-        own.mesh = creased(own.mesh, settings.load.crease_deg, split);
+    if (style.mode == DrawMode::mesh && !style.flat) own.mesh = creased(own, settings.load.crease_deg, split);
     const auto dressed = [&](const ColorPlan& by, ElementSources& sources) {
         const auto whole = colored(own, by, sources);
         return planes.empty() ? whole : clipped(whole, planes, by_vertex, by.by == ColorBy::label, sources);
@@ -281,8 +287,9 @@ void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredS
     const ColorPlan of_points = plan_for(DrawMode::points);
     PointsOnTop& points = drawable.points[index];
     points.meaning = meaning_of(of_points);
-    if (of_points.key == plan.key) return;
-    ElementSources of_vertices = split;
+    if (of_points.key == plan.key && own.mesh == given) return;
+    own.mesh = given;  // vertices are drawn once each, with the normals that they have
+    ElementSources of_vertices;
     points.mesh = dressed(of_points, of_vertices);
     sources.points = of_vertices.points;
 }
@@ -298,12 +305,20 @@ std::shared_ptr<const MeshData> DrawableCache::colored(const SceneSnapshot::Obje
     });
 }
 
-std::shared_ptr<const MeshData> DrawableCache::creased(const std::shared_ptr<const MeshData>& whole,
-                                                       float angle_deg, ElementSources& sources) {
-    if (angle_deg >= 180 || whole->F.empty() || !whole->N.empty()) return whole;
-    return get(fmt::format("crease {} {}", angle_deg, arrays_of(*whole)), *whole, sources, [&](Entry& entry) {
-        MeshData mesh = *whole;
-        const std::vector<int32_t> rows = split_creases(mesh, angle_deg);
+std::shared_ptr<const MeshData> DrawableCache::creased(const SceneSnapshot::Object& object, float angle_deg,
+                                                       ElementSources& sources) {
+    const MeshData& whole = *object.mesh;
+    if (whole.F.empty() || !whole.N.empty()) return object.mesh;
+    const uint64_t F = whole.F.revision(), source = whole.source_vertex.revision();
+    const Creases& creases = *kept_creases_.get({object.node, F, source, angle_deg}, [&] {
+        return creases_.get({whole.V.revision(), F, source, angle_deg},
+                            [&] { return std::make_shared<const Creases>(find_creases(whole, angle_deg)); });
+    });
+    if (creases.empty()) return object.mesh;
+    const std::string key = fmt::format("crease {} {}", creases.F.revision(), arrays_of(whole));
+    return get(key, whole, sources, [&](Entry& entry) {
+        MeshData mesh = whole;
+        const std::vector<int32_t> rows = split_creases(mesh, creases);
         entry.sources.points =
             Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(rows.data(), Eigen::Index(rows.size())));
         return mesh;

@@ -4,10 +4,12 @@
 
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/element_colors.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/spacing_cache.h"
@@ -65,7 +67,7 @@ class DrawableCache {
     DrawableScene apply(const SceneSnapshot& scene, const InferredSettings& settings);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused() { entries_.evict_unused(); }
+    void evict_unused();
 
   private:
     struct Entry {
@@ -81,8 +83,9 @@ class DrawableCache {
     /// The object's data, coloured by a plan.
     std::shared_ptr<const MeshData> colored(const SceneSnapshot::Object& object, const ColorPlan& plan,
                                             ElementSources& sources);
-    /// Data without normals with those that a crease angle gives.
-    std::shared_ptr<const MeshData> creased(const std::shared_ptr<const MeshData>& whole, float angle_deg,
+    /// An object's data, split where those without normals have sharp edges or faces wound against each
+    /// other.
+    std::shared_ptr<const MeshData> creased(const SceneSnapshot::Object& object, float angle_deg,
                                             ElementSources& sources);
     /// What clip planes leave of data that a plan has coloured.
     std::shared_ptr<const MeshData> clipped(const std::shared_ptr<const MeshData>& whole,
@@ -93,6 +96,12 @@ class DrawableCache {
 
     SpacingCache& spacings_;
     RevisionCache<std::string, Entry> entries_;
+    using SharedCreases = std::shared_ptr<const Creases>;
+    /// Of V, F and source_vertex at an angle.
+    RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, float>, SharedCreases> creases_;
+    /// Of a node with these F and source_vertex: those of its first V, so that edges of a mesh that deforms
+    /// do not turn sharp and smooth from picture to picture.
+    RevisionCache<std::tuple<const void*, uint64_t, uint64_t, float>, SharedCreases> kept_creases_;
 };
 
 }  // namespace easypbr::render
