@@ -217,13 +217,14 @@ def test_a_crease_angle_keeps_edges_of_any_mesh_without_normals_sharp(tmp_path):
     triangles = as_mesh((V, F)).F
     sides = np.cross(V[triangles[:, 1]] - V[triangles[:, 0]], V[triangles[:, 2]] - V[triangles[:, 0]])
     split = {"V": V[triangles.ravel()], "F": np.arange(36).reshape(12, 3), "N": np.repeat(sides, 3, axis=0)}
-    sharp, soft = (drawn(what, color_by="solid").astype(int) for what in (split, (V, F)))
+    sharp, soft = (drawn(what, crease_deg=180, color_by="solid").astype(int) for what in (split, (V, F)))
     mesh = Mesh(V, triangles)
     mesh.save(tmp_path / "box.obj")
     for what in ((V, F), mesh, tmp_path / "box.obj", {"V": V, "F": F, "number": range(6)}):
         creased = drawn(what, crease_deg=30, color_by="solid").astype(int)
         # Other vertices with the same normals: 1 for what interpolation rounds.
         assert np.abs(creased - sharp).max() <= 1
+        np.testing.assert_array_equal(drawn(what, color_by="solid"), creased)
         np.testing.assert_array_equal(drawn(what, crease_deg=180, color_by="solid"), soft)
     assert np.abs(sharp - soft).max() > 10
     assert len(mesh.V) == 8, "what is shown stays as it is"

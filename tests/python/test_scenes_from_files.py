@@ -140,6 +140,7 @@ def test_seams_of_texture_coordinates_are_smooth(tmp_path):
     view.scene.show(easypbr.Mesh(tmp_path / "seam.obj"), "seam")
     view.settings.camera.azimuth_deg = 0
     view.settings.camera.elevation_deg = 0
+    view.settings.load.crease_deg = 180
     normals = view.layers(["normal_world"])["normal_world"]
     # By symmetry the common edge's normal is +z; flat halves would have x = -0.707 and +0.707 beside each other.
     assert np.abs(normals[32, 30:34, 0]).max() < 0.1

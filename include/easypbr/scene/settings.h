@@ -206,8 +206,8 @@ using AnnotationSettings = BasicAnnotationSettings<Auto>;
 /// Loading of files by the command line and the window, and normals of what has none.
 template <template <class> class MaybeAuto>
 struct BasicLoadSettings {
-    /// Edges between faces at a larger angle are sharp, degrees, 0 to 180; automatic: 30 for STL files, 180
-    /// for all else.
+    /// Edges between faces at a larger angle are sharp, degrees, 0 to 180; automatic: 30 for STL files, 60
+    /// for all else. A mesh whose V changes while its F stays keeps the edges that were sharp at first.
     MaybeAuto<float> crease_deg{};
     std::string variant;  ///< glTF: name of the material variant; empty: the file's own materials
 };

@@ -419,8 +419,7 @@ void add_loading(Table& table) {
     table.push_back(
         make("load.crease_deg", EASYPBR_AT(load.crease_deg),
              "Crease angle of meshes without normals that are not drawn flat: edges between faces at "
-             "a larger angle are sharp; automatic: 30 for STL files that the command line or the "
-             "window loads, else none is.",
+             "a larger angle are sharp; automatic: 60, and 30 for STL files; 180: none is.",
              "degrees", {0, 180}));
     table.push_back(make("load.variant", EASYPBR_AT(load.variant),
                          "Material variant of glTF files loaded by the command line and the window, by name; "

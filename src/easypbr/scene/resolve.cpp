@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/fields.h"
 
@@ -188,7 +189,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     resolve_exposure(content, settings, resolved);
     detail::fill(settings.annotation.legend, false);
     detail::fill(settings.annotation.colorbar, false);
-    detail::fill(settings.load.crease_deg, 180.0f);
+    detail::fill(settings.load.crease_deg, automatic_crease_deg);
     const detail::EffectContext context{content, size,     samples.value_or(settings.image.samples),
                                         given,   settings, resolved};
 #define EASYPBR_INFER(name, Type) detail::infer(settings.name, context);

@@ -1,0 +1,71 @@
+"""Sharp edges and faces of both windings in meshes without normals."""
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Mesh, Scene, render
+
+SMALL = {"size": (48, 36), "samples": 1}
+
+
+def drawn(what, **settings) -> np.ndarray:
+    return render(what, **SMALL, **settings)
+
+
+def turned_box() -> tuple[np.ndarray, np.ndarray]:
+    """A box with two triangles for each side, of which some are wound the wrong way round."""
+    V = np.array([[x, y, z] for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    F = np.array([half for a, b, c, d in quads for half in ((a, b, c), (a, c, d))])
+    F[::3] = F[::3, ::-1]
+    return V, F
+
+
+@pytest.mark.parametrize("path", [False, True], ids=["raster", "path"])
+def test_sides_of_a_box_without_normals_are_plane(path):
+    V, F = turned_box()
+    scene = Scene()
+    scene.show(Mesh(V, F), "box")
+    view = easypbr.Viewer((48, 36), {"path": {"enabled": path}, "camera": {"azimuth_deg": 30, "elevation_deg": 25}}, scene)
+    layers = view.layers(["normal_world", "element_id", "depth"])
+    normals = layers["normal_world"][layers["depth"].reshape(36, 48) > 0]
+    # Three sides are seen, along the axes; 1e-4 for the encoding.
+    np.testing.assert_allclose(normals.max(axis=1), 1, atol=1e-4)
+    assert {tuple(row) for row in np.rint(normals).astype(int)} == {(1, 0, 0), (0, 1, 0), (0, 0, 1)}
+    view.settings.load.crease_deg = 180
+    smooth = view.layers(["normal_world", "element_id"])
+    np.testing.assert_array_equal(smooth["element_id"], layers["element_id"])
+    assert smooth["normal_world"].max(axis=2).min(where=layers["depth"].reshape(36, 48) > 0, initial=1) < 0.9
+
+
+@pytest.mark.parametrize("look", [{"color_by": "label"}, {"color_by": "scalar"}], ids=["labels", "scalars"])
+def test_sharp_edges_change_no_colours_of_faces_and_vertices(look):
+    V, F = turned_box()
+    mesh = Mesh(V, F)
+    mesh.L = range(12)
+    mesh.scalars["height"] = V[:, 1]
+    flat = {"lit": False, **look}
+    np.testing.assert_array_equal(drawn(mesh, **flat), drawn(mesh, crease_deg=180, **flat))
+
+
+def test_points_on_a_mesh_with_sharp_edges_are_its_own():
+    V, F = turned_box()
+    # Points as large as the picture hide the box. They have no normals, and so are not shaded.
+    points = {"show_points": True, "point_size": 100.0}
+    np.testing.assert_array_equal(drawn((V, F), **points), drawn((V, F), crease_deg=180, **points))
+
+
+def test_a_mesh_that_deforms_keeps_its_sharp_edges():
+    V, F = turned_box()
+    scene = Scene()
+    mesh = scene.show(Mesh(V, F), "box")
+    view = easypbr.Viewer((48, 36), {"camera": {"position": (2, 2, 6), "target": (0, 0, 0)}}, scene)
+    view.layers(["normal_world"])
+    # Sheared by atan(2) = 63.4 degrees: the edges between front and top are at 26.6 or 153.4 degrees.
+    mesh.V = V + V[:, 1:2] * [0, 0, 2]
+    normals = view.layers(["normal_world"])["normal_world"]
+    seen = normals[np.linalg.norm(normals, axis=2) > 0.5]
+    # At most three sides are seen, each with one normal: 0, 89.4, 178.9 and 200 parts of 200 are none that rounding
+    # takes to two numbers when the encoding is off by 1e-4.
+    assert len(np.unique(np.rint(seen * 200), axis=0)) <= 3
