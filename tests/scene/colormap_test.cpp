@@ -178,6 +178,13 @@ TEST(Colormap, StepsAreEqualBands) {
     EXPECT_EQ(color_table(Colormap::grey, 1)[7], whole[128]);
 }
 
+TEST(Colormap, HasUpTo256Bands) {
+    for (const int steps : {-1, 257, 100000}) {
+        EXPECT_THROW((void)color_parts(steps), ArgumentError) << steps;
+        EXPECT_THROW((void)color_table(Colormap::viridis, steps), ArgumentError) << steps;
+    }
+}
+
 TEST(Colormap, BadColoursAreNamed) {
     const auto told = [](auto&& make) -> std::string {
         try {

@@ -255,6 +255,34 @@ TEST(Mesh, StaysAsItWasWhenAnEditFails) {
     EXPECT_EQ(mesh.F().revision(), before->F.revision());
 }
 
+TEST(Mesh, RefusesStylesOutOfTheirRanges) {
+    Mesh mesh(triangle());
+    const auto before = mesh.snapshot();
+    const auto told = [&](auto&& change) -> std::string {
+        try {
+            mesh.edit([&](MeshData& data) { change(data.style); });
+        } catch (const ArgumentError& error) {
+            return error.what();
+        }
+        return "valid";
+    };
+    EXPECT_EQ(
+        told([](Style& style) { style.color_steps = 257; }),
+        "mesh '': style.color_steps: expected a whole number from 0 to 256, or 'auto' or 'follow', got 257");
+    EXPECT_NE(told([](Style& style) { style.point_size = -1.0f; }).find("style.point_size"),
+              std::string::npos);
+    EXPECT_NE(told([](Style& style) { style.nan_color = Vec3(0, 0, 2); }).find("style.nan_color"),
+              std::string::npos);
+    EXPECT_EQ(mesh.snapshot(), before);
+    EXPECT_EQ(told([](Style& style) { style.color_steps = 256; }), "valid");
+    Style thin;
+    thin.line_width = 0.0f;
+    EXPECT_THROW(mesh.set_style(thin), ArgumentError);
+    MeshData data = triangle();
+    data.style = thin;
+    EXPECT_THROW(Mesh{data}, ArgumentError);
+}
+
 TEST(Mesh, LosesNoEditOfTwoThreads) {
     Mesh mesh(triangle());
     const auto count_up = [&] {

@@ -76,11 +76,11 @@ ColorTable color_table(const Colormap& colormap);
 
 /// So many bands of equal width, of evenly chosen colours of the map from its first to its last; the middle
 /// one for a single band, and for 0 the map itself. Entries from color_parts() on repeat the last band.
+/// Throws ArgumentError for less than 0 and for more than 256 bands.
 ColorTable color_table(const Colormap& colormap, int steps);
-/// Parts that the values are cut into: 256, or for bands the largest multiple of their number.
-inline int color_parts(int steps) {
-    return steps > 0 ? steps * (256 / steps) : 256;
-}
+/// Parts that the values are cut into: 256, or for bands the largest multiple of their number. Throws as
+/// color_table() does.
+int color_parts(int steps);
 
 /// How values are spread over a colour map: themselves, or their logarithms.
 enum class ColorScale { linear, log };

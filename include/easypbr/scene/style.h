@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/auto.h"
@@ -45,6 +46,12 @@ struct Style {
     Override<ColorScale> color_scale;  ///< automatic: linear
     Override<int> color_steps;         ///< bands of one colour each, 0 to 256; 0, also automatic: continuous
     Override<Vec3> nan_color;  ///< of missing values; automatic: grey, or magenta with the colour map grey
+
+    bool operator==(const Style&) const = default;
 };
+
+/// Throws ArgumentError that names the field and its range, when a value is outside of it. `owner` stands
+/// before the field's name: "mesh 'robot': ".
+void validate(const Style& style, std::string_view owner);
 
 }  // namespace easypbr

@@ -218,14 +218,21 @@ ColorTable color_table(const Colormap& colormap) {
 
 ColorTable color_table(const Colormap& colormap, int steps) {
     const ColorTable whole = color_table(colormap);
-    if (steps <= 0) return whole;
+    const int parts = color_parts(steps);
+    if (steps == 0) return whole;
     const auto of_band = [&](int band) {
         return whole[steps == 1 ? 128 : size_t(std::lround(band * 255.0 / (steps - 1)))];
     };
     ColorTable table;
-    const int per_band = 256 / steps;
+    const int per_band = parts / steps;
     for (int i = 0; i < 256; ++i) table[size_t(i)] = of_band(std::min(i / per_band, steps - 1));
     return table;
+}
+
+int color_parts(int steps) {
+    if (steps < 0 || steps > 256)
+        throw ArgumentError(fmt::format("colormap: expected 0 to 256 bands, got {}", steps));
+    return steps > 0 ? steps * (256 / steps) : 256;
 }
 
 }  // namespace easypbr

@@ -323,6 +323,13 @@ Value get(const Style& style, std::string_view name) {
     return get(settings, "style." + std::string(name));
 }
 
+void validate(const Style& style, std::string_view owner) {
+    Settings settings;
+    settings.style = style;
+    for (const Field& field : fields())
+        if (field.name.starts_with("style.")) checked(field, field.get(settings), owner);
+}
+
 void set_from_text(Style& style, std::string_view name, std::string_view text) {
     set(style, name, parse_value(field("style." + std::string(name)), text));
 }

@@ -231,6 +231,7 @@ void validate(const MeshData& data, const MeshData& valid) {
     const bool same_labels = same_array(data.L, valid.L) && data.label_map == valid.label_map;
     if (data.label_map && !same_labels) require_labels(data.L, *data.label_map);
     require_parts(data);
+    if (data.style != valid.style) validate(data.style, fmt::format("mesh '{}': ", data.name));
     for (const Material& material : data.materials) validate(material);
 }
 
