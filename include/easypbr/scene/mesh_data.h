@@ -117,8 +117,9 @@ inline PerElement element_of(const MeshData& data, Eigen::Index rows) {
 const ScalarArray& scalar_named(const MeshData& data, const std::string& name);
 
 /// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
-/// together, when a face or edge index is out of range, when a position or the offset is not finite, or when
-/// a label is not in the label map (see LabelMap::accepts).
+/// together, when a face or edge index is out of range, when a position or the offset is not finite, when
+/// a label is not in the label map (see LabelMap::accepts), or when a material or the style has a value
+/// outside of its range.
 void validate(const MeshData& data);
 /// The same, without reading arrays again that `data` shares with data known to be valid.
 void validate(const MeshData& data, const MeshData& valid);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -236,28 +237,72 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
 
 namespace {
 
-/// Powers of ten within the range, every n-th if there are more than `most`.
-std::vector<Tick> powers_of_ten(double min, double max, int most) {
-    const int first = int(std::ceil(std::log10(min) - 1e-6)), last = int(std::floor(std::log10(max) + 1e-6));
-    const int stride = std::max(1, (last - first + most) / most);
-    const bool plain = first >= -3 && last < 6;
-    std::vector<Tick> ticks;
-    for (int exponent = last; exponent >= first; exponent -= stride) {
-        const double value = std::pow(10.0, exponent);
-        ticks.push_back({value, plain ? fmt::format("{:.{}f}", value, std::max(0, -exponent))
-                                      : fmt::format("1e{}", exponent)});
-    }
-    std::ranges::reverse(ticks);
+/// 1, 2 or 5 times a power of ten.
+struct LogTick {
+    int factor, exponent;
+    double value() const { return factor * std::pow(10.0, exponent); }
+};
+
+/// All within the range, the least first. The ends are as float32 holds them.
+std::vector<LogTick> log_ticks(double min, double max) {
+    constexpr double rounding = 1e-6;
+    std::vector<LogTick> ticks;
+    const int first = int(std::floor(std::log10(min))), last = int(std::ceil(std::log10(max)));
+    for (int exponent = first; exponent <= last; ++exponent)
+        for (const int factor : {1, 2, 5})
+            if (const LogTick tick{factor, exponent};
+                tick.value() >= min * (1 - rounding) && tick.value() <= max * (1 + rounding))
+                ticks.push_back(tick);
     return ticks;
+}
+
+std::vector<LogTick> powers_of_ten(const std::vector<LogTick>& ticks) {
+    std::vector<LogTick> powers;
+    std::ranges::copy_if(ticks, std::back_inserter(powers), [](const LogTick& t) { return t.factor == 1; });
+    return powers;
+}
+
+/// Every n-th, with the last, so that there are no more than `most`.
+std::vector<LogTick> thinned(const std::vector<LogTick>& ticks, size_t most) {
+    const size_t stride = std::max<size_t>(1, (ticks.size() + most - 1) / most);
+    std::vector<LogTick> kept;
+    for (size_t from_last = 0; from_last < ticks.size(); from_last += stride)
+        kept.push_back(ticks[ticks.size() - 1 - from_last]);
+    std::ranges::reverse(kept);
+    return kept;
+}
+
+std::vector<Tick> written(const std::vector<LogTick>& log_ticks) {
+    const bool plain = log_ticks.front().exponent >= -3 && log_ticks.back().exponent < 6;
+    std::vector<Tick> ticks;
+    for (const LogTick& tick : log_ticks)
+        ticks.push_back({tick.value(), plain ? fixed_text(tick.value(), std::max(0, -tick.exponent))
+                                             : fmt::format("{}e{}", tick.factor, tick.exponent)});
+    return ticks;
+}
+
+/// Whether ticks of a linear scale lie far enough from each other on a logarithmic bar, too, which has room
+/// for `most`.
+bool has_room(const std::vector<Tick>& ticks, const ValueRange& range, int most) {
+    for (size_t i = 1; i < ticks.size(); ++i)
+        if (place_on_scale(ticks[i].value, range) - place_on_scale(ticks[i - 1].value, range) <
+            1.0 / (most + 1))
+            return false;
+    return true;
 }
 
 }  // namespace
 
 std::vector<Tick> ticks_of(const ValueRange& range, int most) {
-    if (range.scale == ColorScale::log)
-        if (auto ticks = powers_of_ten(range.min, range.max, std::max(1, most)); ticks.size() > 1)
-            return ticks;
-    return ticks_of(double(range.min), double(range.max), most);
+    most = std::max(1, most);
+    const std::vector<Tick> linear = ticks_of(double(range.min), double(range.max), most);
+    if (range.scale == ColorScale::linear) return linear;
+    constexpr size_t enough = 3;  // of 1, 2 and 5, before other ticks are looked for
+    const std::vector<LogTick> fine = log_ticks(range.min, range.max), powers = powers_of_ten(fine);
+    if (fine.size() >= enough && fine.size() <= size_t(most)) return written(fine);
+    if (linear.size() > 1 && has_room(linear, range, most)) return linear;
+    if (powers.size() > 1) return written(thinned(powers, size_t(most)));
+    return fine.empty() ? linear : written(thinned(fine, size_t(most)));
 }
 
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {

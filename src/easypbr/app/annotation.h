@@ -61,7 +61,8 @@ struct Tick {
 /// Values from `min` to `max` (larger) at a round distance: 1, 2 or 5 times a power of ten, at least
 /// one, at most `most` of them.
 std::vector<Tick> ticks_of(double min, double max, int most);
-/// Of a logarithmic scale powers of ten, where it holds two or more.
+/// Of a logarithmic scale 1, 2 and 5 times powers of ten where `most` is enough for all of them, else powers
+/// of ten; those of a linear scale where the range holds hardly any of these.
 std::vector<Tick> ticks_of(const ValueRange& range, int most);
 
 }  // namespace easypbr::app
