@@ -2,11 +2,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "easypbr/app/annotation.h"
+#include "easypbr/app/scene_warnings.h"
+#include "easypbr/core/log.h"
 
 namespace easypbr::app::colorbar_layout_test {
 namespace {
@@ -18,6 +22,44 @@ Texts log_texts(float min, float max, int most) {
     for (const Tick& tick : ticks_of(ValueRange{min, max, min, max, ColorScale::log}, most))
         all.push_back(tick.text);
     return all;
+}
+
+const Rgb8 red{200, 0, 0};
+
+ColorBar red_bar(const std::string& title = "t") {
+    ColorBar bar;
+    bar.title = title;
+    bar.range = {0, 1, 0, 1};
+    bar.table.fill(opaque(red));
+    return bar;
+}
+
+/// What is drawn into a grey picture.
+struct Drawn {
+    PixelRect touched;  ///< all that changed; no width: nothing did
+    int red_columns = 0;
+};
+Drawn drawn(const Annotation& annotation, Vec2i size,
+            const BasicAnnotationSettings<Inferred>& settings = {}) {
+    Image before(size.x(), size.y(), 4, PixelType::u8);
+    Canvas(before).fill({0, 0, size.x(), size.y()}, {64, 64, 64});
+    Image after = before;
+    draw_annotation(annotation, settings, after);
+    int left = size.x(), top = size.y(), right = -1, bottom = -1;
+    Drawn result;
+    for (int x = 0; x < size.x(); ++x) {
+        bool has_red = false;
+        for (int y = 0; y < size.y(); ++y) {
+            const uint8_t *p = after.at<uint8_t>(x, y), *q = before.at<uint8_t>(x, y);
+            has_red |= Rgb8{p[0], p[1], p[2]} == red;
+            if (std::equal(p, p + 4, q)) continue;
+            left = std::min(left, x), right = std::max(right, x);
+            top = std::min(top, y), bottom = std::max(bottom, y);
+        }
+        result.red_columns += has_red;
+    }
+    result.touched = {left, top, std::max(0, right - left + 1), std::max(0, bottom - top + 1)};
+    return result;
 }
 
 }  // namespace
@@ -61,6 +103,81 @@ TEST(LogTicks, DoNotTouch) {
                         0.6)
                         << min << " to " << max << ", " << most;
             }
+}
+
+// A bar is 1.1 text sizes wide: 13 pixels of small text (11.4) and of text of 0.03 times 400 pixels. Beside
+// it stand a border of 0.8, padding of 0.6 twice, ticks, "0.0" and a gap: 6 sizes, more than a third of 150
+// pixels. The panel's 19 sizes are less than a third of the height.
+TEST(ColorBarRoom, NarrowPicturesShowTheWholeBar) {
+    const Annotation bar{{}, {red_bar()}};
+    for (const int width : {100, 150, 400}) {
+        const Vec2i size(width, 1000);
+        const Drawn found = drawn(bar, size);
+        EXPECT_EQ(found.red_columns, 13) << width;
+        EXPECT_GT(found.touched.x, 0);
+        EXPECT_LT(found.touched.x + found.touched.width, width);
+        const Insets strip = annotation_strip(bar, {}, size);
+        EXPECT_EQ(strip.right > 0, width == 400);
+        EXPECT_EQ(strip.top > 0, width < 400);
+    }
+}
+
+// Three bars of text of 0.2 times 200 pixels are wider than the picture, those of 7 pixels are not.
+TEST(ColorBarRoom, LargeTextIsSmallerBeforeABarIsLeftOut) {
+    BasicAnnotationSettings<Inferred> large;
+    large.text_size = 0.2f;
+    const Annotation bars{{}, {red_bar("a"), red_bar("b"), red_bar("c")}};
+    EXPECT_EQ(annotations_left_out(bars, large, {200, 200}), 0);
+    EXPECT_GT(drawn(bars, {200, 200}, large).red_columns, 3 * 8) << "1.1 times 7 pixels";
+}
+
+// Beside each other: of text of 14.4 pixels three would take 3 * 75 + 12 pixels, more than a third of 640.
+TEST(ColorBarRoom, TextIsSmallerWhereOnlyThatFitsTheStrip) {
+    const Annotation bars{{}, {red_bar("a"), red_bar("b"), red_bar("c")}};
+    const Insets strip = annotation_strip(bars, {}, {640, 480});
+    EXPECT_GT(strip.right, 0);
+    EXPECT_LE(strip.right, 1.0 / 3);
+    const int columns = drawn(bars, {640, 480}).red_columns;
+    EXPECT_LT(columns, 3 * 16) << "1.1 times 14.4 pixels";
+    EXPECT_GE(columns, 3 * 11) << "1.1 times two thirds of that";
+}
+
+// Of a third of 640 pixels the title has what the border (12), padding (9 twice) and the gap (9) leave, but
+// for less than a letter, 0.82 text sizes of 14.4 pixels.
+TEST(ColorBarRoom, LongTitlesAreCutToTheStrip) {
+    const Annotation bar{{}, {red_bar(std::string(51, 'w'))}};
+    const Vec2i size(640, 480);
+    const Insets strip = annotation_strip(bar, {}, size);
+    EXPECT_GT(strip.right, 0);
+    const Drawn found = drawn(bar, size);
+    EXPECT_EQ(found.red_columns, 16);
+    EXPECT_LE(found.touched.width, 640 / 3 - 12 - 9);
+    EXPECT_GT(found.touched.width, 640 / 3 - 12 - 9 - 13);
+    // Two share it.
+    const Annotation two{{}, {red_bar(std::string(51, 'w')), red_bar(std::string(50, 'w'))}};
+    EXPECT_GT(annotation_strip(two, {}, size).right, 0);
+    EXPECT_LE(annotation_strip(two, {}, size).right, 1.0 / 3);
+}
+
+// Of the smallest text, with one tick of one digit, a bar's panel takes 25 pixels and a gap of 4, beside a
+// border of 6.
+TEST(ColorBarRoom, WhatDoesNotFitIsLeftOutAndToldOnce) {
+    const Annotation bars{{}, {red_bar("a"), red_bar("b"), red_bar("c")}};
+    EXPECT_EQ(annotations_left_out(bars, {}, {64, 48}), 1);
+    EXPECT_EQ(annotations_left_out(bars, {}, {640, 480}), 0);
+    EXPECT_EQ(annotations_left_out({}, {}, {1, 1}), 0);
+    EXPECT_EQ(drawn(bars, {64, 48}).red_columns, 2 * 8);
+    EXPECT_EQ(annotations_left_out(bars, {}, {16, 16}), 3);
+    EXPECT_EQ(drawn(bars, {16, 16}).touched.width, 0);
+    Texts told;
+    set_log_sink([&](LogLevel, std::string_view message) { told.emplace_back(message); });
+    SceneWarnings warnings;
+    for (const Vec2i& size : {Vec2i(64, 48), Vec2i(64, 48), Vec2i(640, 480), Vec2i(16, 16)})
+        warnings.check(bars, {}, size);
+    set_log_sink({});
+    EXPECT_EQ(told,
+              (Texts{"annotation: an image of 64x48 pixels has no room for 1 of 3 legends and colour bars",
+                     "annotation: an image of 16x16 pixels has no room for 3 of 3 legends and colour bars"}));
 }
 
 }  // namespace easypbr::app::colorbar_layout_test

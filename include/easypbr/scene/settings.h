@@ -198,7 +198,9 @@ struct BasicAnnotationSettings {
     MaybeAuto<bool> colorbar{};  ///< of the values that colour objects; automatic: no
     std::string title;           ///< empty: the name of the values
     Corner corner = Corner::top_right;
-    float text_size = 0.03f;  ///< fraction of the image height, 0.005 to 0.2; at least 11 pixels where that fits
+    /// Fraction of the image's shorter side, 0.005 to 0.2; at least 11 pixels where that fits, up to a third
+    /// smaller where only that fits beside the content.
+    float text_size = 0.03f;
     bool operator==(const BasicAnnotationSettings&) const = default;
 };
 using AnnotationSettings = BasicAnnotationSettings<Auto>;

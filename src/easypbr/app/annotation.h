@@ -49,8 +49,13 @@ Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& set
 Insets annotation_strip(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                         Vec2i size);
 
-/// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height,
-/// but text of at least 11 pixels where that fits.
+/// Legends and colour bars that a picture of this size has no room for, even in the smallest text.
+int annotations_left_out(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                         Vec2i size);
+
+/// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's shorter
+/// side, but text is at least 11 pixels high where that fits, and up to a third smaller where only that fits
+/// into a third of the picture. Longer titles are shortened.
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                      Image& picture);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "easypbr/app/annotation.h"
 #include "easypbr/app/font.h"
@@ -24,6 +25,8 @@ constexpr double largest_strip = 1.0 / 3;
 constexpr float small_text = 11.4f;
 /// Nothing is readable below.
 constexpr float smallest_text = 7;
+/// Part of the size asked for that text keeps at least where it is made smaller for the strip.
+constexpr float kept_size = 2.0f / 3;
 
 const Rgb8 dark_ink{16, 16, 16}, light_ink{245, 245, 245}, dark_panel{0, 0, 0}, light_panel{255, 255, 255};
 /// How much of what is behind is covered.
@@ -86,11 +89,24 @@ struct Block {
     std::function<void(Pen&, int x, int y)> draw;
 };
 
-Block titled(const TextMetrics& metrics, const std::string& text, int room_x, Block block) {
+enum class Titles {
+    whole,  ///< a shortened one leaves its block incomplete
+    cut     ///< to their block's part of the strip
+};
+
+/// What a block may take.
+struct Room {
+    int x, y;
+    int title;  ///< width
+    Titles titles;
+};
+
+Block titled(const TextMetrics& metrics, const std::string& text, const Room& room, Block block) {
     if (text.empty()) return block;
-    const std::string title = metrics.shortened(text, std::max(room_x, block.width));
+    const std::string title = metrics.shortened(text, std::max(room.title, block.width));
     const int row = metrics.px(row_height);
-    return {std::max(block.width, metrics.width(title)), block.height + row, block.is_whole && title == text,
+    const bool is_whole = block.is_whole && (room.titles == Titles::cut || title == text);
+    return {std::max(block.width, metrics.width(title)), block.height + row, is_whole,
             [title, row, inner = block.draw](Pen& p, int x, int y) {
                 p.write(title, x, y, row);
                 inner(p, x, y + row);
@@ -174,9 +190,9 @@ class LegendLayout {
     std::vector<int> x_;
 };
 
-Block legend_block(const TextMetrics& metrics, const Legend& legend, int room_x, int room_y) {
-    const LegendLayout layout(metrics, legend, room_x, room_y);
-    return titled(metrics, legend.title, room_x,
+Block legend_block(const TextMetrics& metrics, const Legend& legend, const Room& room) {
+    const LegendLayout layout(metrics, legend, room.x, room.y);
+    return titled(metrics, legend.title, room,
                   {layout.width(), layout.height(), layout.is_whole(),
                    [layout](Pen& p, int x, int y) { layout.draw(p, x, y); }});
 }
@@ -252,9 +268,9 @@ std::vector<Tick> ticks_within(const ValueRange& range, int height, int row) {
     return ticks;
 }
 
-Block bar_block(const TextMetrics& metrics, const ColorBar& given, int room_x, int room_y) {
+Block bar_block(const TextMetrics& metrics, const ColorBar& given, const Room& room) {
     const int row = metrics.px(row_height), half_row = row / 2;
-    const ColorBar bar = fitting(given, room_y, row);
+    const ColorBar bar = fitting(given, room.y, row);
     BarLayout layout;
     layout.bar = metrics.px(bar_width);
     layout.arrow = metrics.px(arrow_height);
@@ -264,7 +280,7 @@ Block bar_block(const TextMetrics& metrics, const ColorBar& given, int room_x, i
     layout.top = bar.range.clips_above() ? std::max(layout.arrow, half_row) : half_row;
     const int below = bar.range.clips_below() ? std::max(layout.arrow, half_row) : half_row;
     const int others = layout.top + below + (bar.nan_color ? row : 0) + (bar.title.empty() ? 0 : row);
-    layout.height = std::max(2, std::min(metrics.px(longest_bar), room_y - others));
+    layout.height = std::max(2, std::min(metrics.px(longest_bar), room.y - others));
     layout.ticks = ticks_within(bar.range, layout.height, row);
     int widest = 0;
     for (const Tick& tick : layout.ticks) widest = std::max(widest, metrics.width(tick.text));
@@ -283,7 +299,7 @@ Block bar_block(const TextMetrics& metrics, const ColorBar& given, int room_x, i
         p.write(missing, x + layout.text_x, y + nan_y, row);
     };
     const bool is_whole = bar.title == given.title && bar.nan_color == given.nan_color;
-    return titled(metrics, bar.title, room_x,
+    return titled(metrics, bar.title, room,
                   {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), is_whole, draw});
 }
 
@@ -302,25 +318,30 @@ void draw_block(Pen& pen, const Block& block, const PixelRect& panel) {
     block.draw(pen, panel.x + pen.px(padding), panel.y + pen.px(padding));
 }
 
-/// The blocks of an annotation on their panels, next to each other from the corner of a picture inwards.
+/// The blocks of an annotation on their panels, next to each other from the corner of a picture inwards. What
+/// the picture has no room for is left out.
 class AnnotationLayout {
   public:
-    AnnotationLayout(const Annotation& annotation, Corner corner, Vec2i picture, float em)
-        : metrics_(em), corner_(corner), picture_(picture), used_(border()) {
-        const int room_y = picture.y() - 2 * (border() + pad());
-        for (const Legend& legend : annotation.legends)
-            place(legend_block(metrics_, legend, room_x(), room_y));
-        for (const ColorBar& bar : annotation.bars) place(bar_block(metrics_, bar, room_x(), room_y));
+    AnnotationLayout(const Annotation& annotation, Corner corner, Vec2i picture, float em, Titles titles)
+        : metrics_(em),
+          corner_(corner),
+          picture_(picture),
+          titles_(titles),
+          count_(int(annotation.legends.size() + annotation.bars.size())),
+          used_(border()) {
+        for (const Legend& legend : annotation.legends) place(legend_block(metrics_, legend, room()));
+        for (const ColorBar& bar : annotation.bars) place(bar_block(metrics_, bar, room()));
     }
 
+    int left_out() const { return count_ - int(panels_.size()); }
     /// Whether all of it is shown, in a strip that an automatic camera leaves free.
-    bool fits() const { return is_whole_ && used_ <= picture_.x() && strip() != Insets(); }
+    bool fits() const { return is_whole_ && left_out() == 0 && strip() != Insets(); }
 
     Insets strip() const {
         const double across = double(used_) / picture_.x(),
                      along = double(border() + tallest_ + metrics_.px(gap)) / picture_.y();
         Insets insets;
-        if (std::min(across, along) > largest_strip) return insets;
+        if (panels_.empty() || std::min(across, along) > largest_strip) return insets;
         if (across <= along)
             (at_right(corner_) ? insets.right : insets.left) = across;
         else
@@ -336,12 +357,19 @@ class AnnotationLayout {
   private:
     int border() const { return metrics_.px(margin); }
     int pad() const { return metrics_.px(padding); }
-    int room_x() const { return picture_.x() - used_ - border() - 2 * pad(); }
+
+    Room room() const {
+        const int x = picture_.x() - used_ - border() - 2 * pad();
+        const int y = picture_.y() - 2 * (border() + pad());
+        const int share = int((largest_strip * picture_.x() - border()) / count_);
+        return {x, y, titles_ == Titles::cut ? share - metrics_.px(gap) - 2 * pad() : x, titles_};
+    }
 
     void place(const Block& block) {
         const int width = block.width + 2 * pad(), height = block.height + 2 * pad();
         const int x = at_right(corner_) ? picture_.x() - used_ - width : used_;
         const int y = at_bottom(corner_) ? picture_.y() - border() - height : border();
+        if (x < 0 || y < 0 || x + width > picture_.x() || y + height > picture_.y()) return;
         panels_.push_back({block, {x, y, width, height}});
         used_ += width + metrics_.px(gap);
         tallest_ = std::max(tallest_, height);
@@ -355,25 +383,44 @@ class AnnotationLayout {
     TextMetrics metrics_;
     Corner corner_;
     Vec2i picture_;
+    Titles titles_;
+    int count_;        ///< of blocks that are asked for
     int used_;         ///< of the picture's width, from the corner inwards
     int tallest_ = 0;  ///< panel's height
     bool is_whole_ = true;
     std::vector<Panel> panels_;
 };
 
-/// Text as large as asked for, or as small as a bar needs to fit. Small text is made larger where there is
-/// room.
+/// Sizes to try for a layout that fits the strip: small text is made larger first, then what is asked for
+/// smaller.
+std::vector<float> strip_sizes(float asked, float most) {
+    std::vector<float> sizes;
+    for (float em = std::min(small_text, most); em > asked; em -= 1) sizes.push_back(em);
+    for (float em = asked; em >= std::max(smallest_text, kept_size * asked); em -= 1) sizes.push_back(em);
+    return sizes;
+}
+
+/// Text as large as asked for, or as small as a bar needs to fit into the height. The first that fits the
+/// strip, if need be with shortened titles, else the largest from which nothing is left out.
 AnnotationLayout laid_out(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                           Vec2i picture) {
     const float height = float(picture.y());
     float most = height;
     for (const ColorBar& bar : annotation.bars) most = std::min(most, height / least_height(bar));
-    const float asked = std::max(smallest_text, std::min(settings.text_size * height, most));
-    for (float em = std::min(small_text, most); em > asked; em -= 1) {
-        AnnotationLayout larger(annotation, settings.corner, picture, em);
-        if (larger.fits()) return larger;
+    const float given = settings.text_size * float(picture.minCoeff());
+    const float asked = std::max(smallest_text, std::min(given, most));
+    const auto with = [&](float em, Titles titles) {
+        return AnnotationLayout(annotation, settings.corner, picture, em, titles);
+    };
+    const std::vector<float> sizes = strip_sizes(asked, most);
+    for (const Titles titles : {Titles::whole, Titles::cut}) {
+        if (!with(sizes.back(), titles).fits()) continue;  // Larger ones take more room.
+        for (const float em : sizes)
+            if (AnnotationLayout layout = with(em, titles); layout.fits()) return layout;
     }
-    return {annotation, settings.corner, picture, asked};
+    for (float em = asked; em > smallest_text; em -= 1)
+        if (AnnotationLayout layout = with(em, Titles::cut); layout.left_out() == 0) return layout;
+    return with(smallest_text, Titles::cut);
 }
 
 }  // namespace
@@ -381,6 +428,11 @@ AnnotationLayout laid_out(const Annotation& annotation, const BasicAnnotationSet
 Insets annotation_strip(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                         Vec2i size) {
     return annotation.empty() ? Insets{} : laid_out(annotation, settings, size).strip();
+}
+
+int annotations_left_out(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                         Vec2i size) {
+    return annotation.empty() ? 0 : laid_out(annotation, settings, size).left_out();
 }
 
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,

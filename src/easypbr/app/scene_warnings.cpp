@@ -60,6 +60,15 @@ std::string colorbar_text(const Annotation& annotation, const BasicAnnotationSet
     return "annotation.colorbar: nothing is coloured by values, there is no colour bar";
 }
 
+std::string room_text(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                      Vec2i size) {
+    const int left_out = annotations_left_out(annotation, settings, size);
+    if (left_out == 0) return {};
+    return fmt::format(
+        "annotation: an image of {}x{} pixels has no room for {} of {} legends and colour bars", size.x(),
+        size.y(), left_out, annotation.legends.size() + annotation.bars.size());
+}
+
 }  // namespace
 
 void SceneWarnings::Once::tell(const std::string& text) {
@@ -74,9 +83,11 @@ void SceneWarnings::check(const SceneSnapshot& scene, const Settings& settings,
     shaders_.tell(shaders_text(scene, settings));
 }
 
-void SceneWarnings::check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
+void SceneWarnings::check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                          Vec2i size) {
     legend_.tell(legend_text(annotation, settings));
     colorbar_.tell(colorbar_text(annotation, settings));
+    room_.tell(room_text(annotation, settings, size));
 }
 
 }  // namespace easypbr::app

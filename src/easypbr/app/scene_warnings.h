@@ -19,8 +19,9 @@ class SceneWarnings {
     /// any, which is drawn as points; a material with a shader that has no faces to act on; paths that are
     /// asked for where a material has extensions of glTF.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
-    /// The same: a legend or a colour bar that there is nothing for.
-    void check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings);
+    /// The same: a legend or a colour bar that there is nothing for, or that a picture of this size has no
+    /// room for.
+    void check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings, Vec2i size);
 
   private:
     /// Remembers whether something is wrong; logs `text` when it was not before.
@@ -28,7 +29,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, normals_, shaders_, legend_, colorbar_;
+    Once lens_, normals_, shaders_, legend_, colorbar_, room_;
 };
 
 }  // namespace easypbr::app

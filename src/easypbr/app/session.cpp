@@ -191,7 +191,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
 
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {
     Annotation annotation = annotation_of(prepared.scene, prepared.resolved.settings);
-    warnings_.check(annotation, prepared.resolved.settings.annotation);
+    warnings_.check(annotation, prepared.resolved.settings.annotation, drawn.lens().size);
     if (annotation.empty()) return;
     drawn.finish_.annotate = [annotation = std::move(annotation),
                               settings = prepared.resolved.settings.annotation](Image& picture) {

@@ -409,10 +409,11 @@ void add_annotation(Table& table) {
                          "none for legends."));
     table.push_back(make("annotation.corner", EASYPBR_AT(annotation.corner),
                          "Corner of the image that legends and colour bars are placed in."));
-    table.push_back(
-        make("annotation.text_size", EASYPBR_AT(annotation.text_size),
-             "Text size as a fraction of the image height, but at least 11 pixels where that fits.", "",
-             {0.005, 0.2}));
+    table.push_back(make(
+        "annotation.text_size", EASYPBR_AT(annotation.text_size),
+        "Text size as a fraction of the shorter side of the image, but at least 11 pixels where that fits, "
+        "and up to a third smaller where only that fits beside the content.",
+        "", {0.005, 0.2}));
 }
 
 void add_loading(Table& table) {
