@@ -123,6 +123,20 @@ TEST(Colormap, ATableIsAMapOfTheSameTable) {
     EXPECT_EQ(color_table(Colormap(many)), table);
 }
 
+// 1e-31 is a fifth of the way from 0 to 5e-31: part 51 of 256.
+TEST(ColorScale, TinyValuesHaveRangesOfTheirOwn) {
+    const ValueRange given = value_range(values({1e-31f, 5e-31f}), 0.0f, 5e-31f);
+    EXPECT_EQ(std::pair(given.min, given.max), std::pair(0.0f, 5e-31f));
+    EXPECT_EQ(color_index(1e-31f, given), 51);
+    const ValueRange automatic = automatic_range(values({1e-31f, 5e-31f}));
+    EXPECT_EQ(std::pair(automatic.min, automatic.max), std::pair(1e-31f, 5e-31f));
+    // Differences without all their digits, and none at all, are not divided by.
+    for (const float same : {0.0f, 1e-40f, 7.0f}) {
+        const ValueRange wide = automatic_range(values({same, same}));
+        EXPECT_EQ(color_index(same, wide), 128) << same;
+    }
+}
+
 // The middle of 1 to 100 on a logarithmic scale is their geometric mean, 10.
 TEST(ColorScale, LogarithmsAreSpreadEvenly) {
     const ValueRange range = value_range(values({1, 100, 0, -3, no_value}), {}, {}, false, ColorScale::log);

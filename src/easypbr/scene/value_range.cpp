@@ -17,6 +17,8 @@ constexpr size_t palette_grain = 1 << 16;
 constexpr Eigen::Index most_samples = 1 << 18;
 /// Differences of values up to here are finite.
 constexpr float largest = 1e38f;
+/// Smaller differences have lost digits, or are 0.
+constexpr float smallest_span = std::numeric_limits<float>::min();
 
 struct Extent {
     float min = std::numeric_limits<float>::infinity(), max = -std::numeric_limits<float>::infinity();
@@ -76,7 +78,7 @@ void widen(ValueRange& range) {
         range.max *= half_decade;
         return;
     }
-    if (range.max - range.min > 1e-30f) return;
+    if (range.max - range.min >= smallest_span) return;
     const float half = std::max(0.5f, std::abs(range.min) * 1e-3f);
     range.min -= half;
     range.max += half;
