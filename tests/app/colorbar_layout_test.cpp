@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -178,6 +180,34 @@ TEST(ColorBarRoom, WhatDoesNotFitIsLeftOutAndToldOnce) {
     EXPECT_EQ(told,
               (Texts{"annotation: an image of 64x48 pixels has no room for 1 of 3 legends and colour bars",
                      "annotation: an image of 16x16 pixels has no room for 3 of 3 legends and colour bars"}));
+}
+
+// One that has no missing values shares either bar, the first.
+TEST(ColorBars, AreSharedByOneColourOfMissingValues) {
+    const auto mesh_with = [](float value, const Vec3& nan_color) {
+        MeshData mesh;
+        mesh.V = Array3f(Array3f::Dense::Zero(3, 3));
+        mesh.scalars = {{"s", Array1f(Array1f::Dense{{0.0f}, {1.0f}, {value}})}};
+        mesh.style.nan_color = nan_color;
+        return std::make_shared<const MeshData>(mesh);
+    };
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    SceneSnapshot scene;
+    const auto add = [&](const char* name, float value, const Vec3& nan_color) {
+        scene.objects.push_back({name, mesh_with(value, nan_color), Eigen::Affine3d::Identity()});
+    };
+    add("a", none, Vec3(1, 0, 0));
+    add("b", none, Vec3(0, 0, 1));
+    add("c", 0.5f, Vec3(0, 1, 0));
+    InferredSettings settings;
+    settings.camera.up = "+y";
+    settings.annotation.colorbar = true;
+    const std::vector<ColorBar> bars = annotation_of(scene, settings).bars;
+    ASSERT_EQ(bars.size(), 2u);
+    EXPECT_EQ(bars[0].title, "s (a + 1 more)");
+    EXPECT_EQ(bars[0].nan_color, (Rgba8{255, 0, 0, 255}));
+    EXPECT_EQ(bars[1].title, "s (b)");
+    EXPECT_EQ(bars[1].nan_color, (Rgba8{0, 0, 255, 255}));
 }
 
 }  // namespace easypbr::app::colorbar_layout_test

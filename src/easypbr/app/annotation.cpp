@@ -132,7 +132,9 @@ class Collector {
         bar.table = plan_table(plan);
         if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));
         const auto same = [&](const Shared& other) {
-            return other.bar.title == bar.title && other.bar.range.min == bar.range.min &&
+            const bool differ =
+                other.bar.nan_color && bar.nan_color && *other.bar.nan_color != *bar.nan_color;
+            return !differ && other.bar.title == bar.title && other.bar.range.min == bar.range.min &&
                    other.bar.range.max == bar.range.max && other.bar.range.scale == bar.range.scale &&
                    other.bar.range.parts == bar.range.parts && other.bar.table == bar.table;
         };
