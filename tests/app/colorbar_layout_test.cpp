@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "easypbr/app/annotation.h"
+#include "easypbr/app/font.h"
 #include "easypbr/app/scene_warnings.h"
 #include "easypbr/core/log.h"
 
@@ -208,6 +209,25 @@ TEST(ColorBars, AreSharedByOneColourOfMissingValues) {
     EXPECT_EQ(bars[0].nan_color, (Rgba8{255, 0, 0, 255}));
     EXPECT_EQ(bars[1].title, "s (b)");
     EXPECT_EQ(bars[1].nan_color, (Rgba8{0, 0, 255, 255}));
+}
+
+// DejaVu Sans has Greek and no Chinese.
+TEST(Font, NamesWhatItLacks) {
+    EXPECT_EQ(missing_characters("a \u0394 \u5730\u9762 \u5730"), (Texts{"\u5730", "\u9762"}));
+    EXPECT_EQ(missing_characters("\xff\n"), Texts());
+    Texts told;
+    set_log_sink([&](LogLevel, std::string_view message) { told.emplace_back(message); });
+    SceneWarnings warnings;
+    const Annotation annotation{{{"\u8eca", {{"\u5730\u9762", red}, {"tree", red}}}}, {red_bar("\u8eca")}};
+    for (int i = 0; i < 2; ++i) warnings.check(annotation, {}, {640, 480});
+    std::string name;
+    for (int i = 0; i < 10; ++i) name += std::string("\xe4\xb8") + char(0x80 + i);  // U+4E00 to U+4E09
+    SceneWarnings().check({{{"", {{name, red}}}}, {}}, {}, {640, 480});
+    set_log_sink({});
+    ASSERT_EQ(told.size(), 2u);
+    EXPECT_EQ(told[0],
+              "annotation: the font, DejaVu Sans, lacks \u8eca, \u5730, \u9762: boxes are drawn instead");
+    EXPECT_NE(told[1].find(" and 2 more: "), std::string::npos);
 }
 
 }  // namespace easypbr::app::colorbar_layout_test

@@ -1,8 +1,10 @@
 #include "easypbr/app/font.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #define STB_TRUETYPE_IMPLEMENTATION
 #define STBTT_STATIC
@@ -69,6 +71,18 @@ void draw_glyph(int glyph, float scale, float x, int baseline, const Coverage& c
 
 std::span<const std::byte> font_file() {
     return std::as_bytes(std::span(easypbr_font_begin, easypbr_font_end));
+}
+
+std::vector<std::string> missing_characters(std::string_view text) {
+    std::vector<std::string> missing;
+    for (size_t at = 0; at < text.size();) {
+        const size_t begin = at;
+        const uint32_t code = next_code(text, at);
+        if (code < 0x80 || stbtt_FindGlyphIndex(&font(), int(code)) != 0) continue;
+        std::string character(text.substr(begin, at - begin));
+        if (std::ranges::find(missing, character) == missing.end()) missing.push_back(std::move(character));
+    }
+    return missing;
 }
 
 Font::Font(float em) : scale_(stbtt_ScaleForMappingEmToPixels(&font(), em)) {

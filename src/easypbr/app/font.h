@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace easypbr::app {
 
@@ -13,6 +15,9 @@ using Coverage = std::function<void(int x, int y, float coverage)>;
 
 /// The embedded font's file (TrueType).
 std::span<const std::byte> font_file();
+
+/// The characters of a text that the font lacks, in UTF-8, each once.
+std::vector<std::string> missing_characters(std::string_view text);
 
 /// DejaVu Sans in one size. Text is UTF-8; what the font lacks is a box.
 class Font {

@@ -1,9 +1,13 @@
 #include "easypbr/app/scene_warnings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "easypbr/app/font.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
@@ -69,6 +73,27 @@ std::string room_text(const Annotation& annotation, const BasicAnnotationSetting
         size.y(), left_out, annotation.legends.size() + annotation.bars.size());
 }
 
+/// All that is written but for numbers.
+std::string texts_of(const Annotation& annotation) {
+    std::string texts;
+    for (const ColorBar& bar : annotation.bars) texts += bar.title;
+    for (const Legend& legend : annotation.legends) {
+        texts += legend.title;
+        for (const LegendEntry& entry : legend.entries) texts += entry.name;
+    }
+    return texts;
+}
+
+std::string font_text(const Annotation& annotation) {
+    constexpr size_t most_named = 8;
+    std::vector<std::string> missing = missing_characters(texts_of(annotation));
+    if (missing.empty()) return {};
+    const size_t others = missing.size() - std::min(missing.size(), most_named);
+    missing.resize(missing.size() - others);
+    return fmt::format("annotation: the font, DejaVu Sans, lacks {}{}: boxes are drawn instead",
+                       fmt::join(missing, ", "), others == 0 ? "" : fmt::format(" and {} more", others));
+}
+
 }  // namespace
 
 void SceneWarnings::Once::tell(const std::string& text) {
@@ -87,6 +112,7 @@ void SceneWarnings::check(const Annotation& annotation, const BasicAnnotationSet
                           Vec2i size) {
     legend_.tell(legend_text(annotation, settings));
     colorbar_.tell(colorbar_text(annotation, settings));
+    font_.tell(font_text(annotation));
     room_.tell(room_text(annotation, settings, size));
 }
 

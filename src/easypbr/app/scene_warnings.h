@@ -20,7 +20,7 @@ class SceneWarnings {
     /// asked for where a material has extensions of glTF.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
     /// The same: a legend or a colour bar that there is nothing for, or that a picture of this size has no
-    /// room for.
+    /// room for; characters that the font lacks.
     void check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings, Vec2i size);
 
   private:
@@ -29,7 +29,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, normals_, shaders_, legend_, colorbar_, room_;
+    Once lens_, normals_, shaders_, legend_, colorbar_, font_, room_;
 };
 
 }  // namespace easypbr::app
