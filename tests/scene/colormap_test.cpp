@@ -131,6 +131,7 @@ TEST(ColorScale, TinyValuesHaveRangesOfTheirOwn) {
     const ValueRange automatic = automatic_range(values({1e-31f, 5e-31f}));
     EXPECT_EQ(std::pair(automatic.min, automatic.max), std::pair(1e-31f, 5e-31f));
     // Differences without all their digits, and none at all, are not divided by.
+    EXPECT_EQ(color_index(1e-40f, automatic_range(values({0.0f, 1e-40f}))), 128);
     for (const float same : {0.0f, 1e-40f, 7.0f}) {
         const ValueRange wide = automatic_range(values({same, same}));
         EXPECT_EQ(color_index(same, wide), 128) << same;
