@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .._easypbr import Mesh
 from ..errors import ArgumentError, UnknownNameError
 from ..tensors import as_numpy
-from .maker import Maker, colors, fan
+from .maker import Maker, colors, triangles
 
 #: What arrays of a mesh are called: here, in NPZ files, in pandas and in Polyscope. The first is Mesh's own name.
 NAMES: dict[str, tuple[str, ...]] = {
@@ -51,7 +51,7 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
             given[name] = value
         else:
             others[str(word)] = value
-    F, face_of = fan(given.get("F"))
+    F, face_of = triangles(given.get("F"), given.get("V"))
     given["F"] = F
     if face_of is not None:
         if others.get("source_face") is not None:
@@ -165,8 +165,8 @@ def _is_whole(block: NDArray[Any]) -> bool:
 
 def of_vertices_and_faces(V: Any, F: Any, make: Maker) -> Mesh:
     """A mesh of (V, F)."""
-    triangles, face_of = fan(F)
-    return make.mesh(V=as_numpy(V), F=triangles, source_face=face_of)
+    corners, face_of = triangles(F, V)
+    return make.mesh(V=as_numpy(V), F=corners, source_face=face_of)
 
 
 def is_table(what: Any) -> bool:

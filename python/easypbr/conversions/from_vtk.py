@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .._easypbr import Mesh
 from ..errors import ArgumentError
-from .maker import Maker, colors, fan, rows, separate_corners
+from .maker import Maker, colors, rows, separate_corners, triangles
 
 #: An array of more values for each point or cell is not taken apart into scalars.
 _MOST_COMPONENTS = 16
@@ -337,7 +337,7 @@ def of_like_pyvista(what: Any, make: Maker) -> Mesh:
     # Only surfaces have faces.
     if not hasattr(what, "is_all_triangles"):
         what = what.extract_surface()
-    F, polygon_of_F = fan(_polygons(np.asarray(what.faces)))
+    F, polygon_of_F = triangles(_polygons(np.asarray(what.faces)), what.points)
     data, count = what.point_data, what.n_points
     return make.mesh(
         V=what.points,

@@ -146,30 +146,31 @@ def colors(array: Any, count: int) -> NDArray[Any] | None:
     return np.asarray(_easypbr.unit_colors(found))
 
 
-def fan(faces: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
+def triangles(faces: Any, V: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
     """m x 3 vertex indices of faces (m x k, or a sequence of polygons of any number of corners), and the polygon that each
-    belongs to; None: each is a triangle already."""
+    belongs to; None: each is a triangle already. Polygons of the vertices V are cut as those of files are, concave ones too."""
     if faces is None:
         return None, None
     faces = as_numpy(faces)
     if not isinstance(faces, np.ndarray):
-        faces = [np.asarray(as_numpy(face)) for face in faces]
-        if len({len(np.atleast_1d(face)) for face in faces}) > 1:
-            return _fan_of_lists(faces)
-    array = np.asarray(faces)
-    if array.ndim != 2 or array.shape[1] <= 3:
-        return (array if len(array) else None), None
-    corners = array.shape[1]
-    split = [array[:, [0, i, i + 1]] for i in range(1, corners - 1)]
-    return np.stack(split, axis=1).reshape(-1, 3), np.repeat(np.arange(len(array)), corners - 2)
+        polygons = [np.asarray(as_numpy(face)) for face in faces]
+        if len({face.shape for face in polygons}) > 1:
+            return _cut(_corners(polygons), [len(face) for face in polygons], V)
+        faces = np.asarray(polygons)
+    if faces.ndim != 2 or faces.shape[1] <= 3:
+        return (faces if len(faces) else None), None
+    return _cut(faces.ravel(), np.full(len(faces), faces.shape[1]), V)
 
 
-def _fan_of_lists(faces: list[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
-    if any(face.ndim != 1 or len(face) < 3 for face in faces):
+def _corners(polygons: list[NDArray[Any]]) -> NDArray[Any]:
+    if any(face.ndim != 1 or len(face) < 3 for face in polygons):
         raise ArgumentError("faces: expected m x 3 vertex indices, or polygons of at least 3 corners each")
-    found = [(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)]
-    owner = [number for number, face in enumerate(faces) for _ in range(len(face) - 2)]
-    return np.array(found), np.array(owner)
+    return np.concatenate(polygons)
+
+
+def _cut(corners: NDArray[Any], sizes: Any, V: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+    F, polygon_of = _easypbr.cut_polygons(None if V is None else as_numpy(V), corners, sizes)
+    return np.asarray(F), np.asarray(polygon_of)
 
 
 def separate_corners(faces: NDArray[Any], values: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:

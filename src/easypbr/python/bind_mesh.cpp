@@ -4,7 +4,9 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstdint>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_queue.h"
+#include "easypbr/io/tables/polygons.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/mesh_fields.h"
@@ -235,6 +238,42 @@ void construct_from_arrays(Mesh* self, const ArrayLike& V, const ArrayLike& F, b
     });
 }
 
+/// Polygons of these numbers of corners, which follow one another.
+io::Polygons to_polygons(nb::handle corners, nb::handle sizes) {
+    const Array1i::Dense counts = to_array<int32_t, 1>(sizes, {"F", 1, 1});
+    io::Polygons polygons;
+    polygons.values = to_array<int32_t, 1>(corners, {"F", 1, 1});
+    polygons.rows = size_t(counts.size());
+    const int64_t sum = counts.cast<int64_t>().sum();
+    if ((counts.array() < 0).any() || sum != polygons.values.size() || sum > INT32_MAX)
+        throw ArgumentError(fmt::format("faces: expected {} corners of {} polygons, up to {} in all, got {}",
+                                        sum, polygons.rows, INT32_MAX, polygons.value_count()));
+    polygons.first.assign(polygons.rows + 1, 0);
+    std::partial_sum(counts.begin(), counts.end(), polygons.first.begin() + 1);
+    return polygons;
+}
+
+void require_corners(const io::Polygons& polygons, Eigen::Index vertices) {
+    for (size_t row = 0; row < polygons.rows; ++row)
+        for (size_t i = polygons.begin_of(row); i < polygons.begin_of(row) + polygons.size_of(row); ++i)
+            if (const int32_t index = polygons.values[Eigen::Index(i)]; index < 0 || index >= vertices)
+                throw ArgumentError(
+                    fmt::format("mesh array F: expected vertex indices from 0 to {}, got {} in row {} of {}",
+                                vertices - 1, index, row, polygons.rows));
+}
+
+/// Triangles of polygons, and the polygon of each.
+nb::tuple cut_polygons(const ArrayLike& V, const ArrayLike& corners, const ArrayLike& sizes) {
+    io::Polygons polygons = to_polygons(corners, sizes);
+    MeshData mesh;
+    if (!V.is_none()) mesh.V = to_positions(V, {"V", 3, 3}).V;
+    released([&] {
+        require_corners(polygons, mesh.V.rows());
+        io::triangulate(std::move(polygons), mesh);
+    });
+    return nb::make_tuple(view_of(mesh.F), view_of(mesh.source_face));
+}
+
 /// What `with mesh.edit("V") as v` holds: a writable copy, put in place when the block ends well.
 struct ArrayEdit {
     Mesh mesh;
@@ -383,6 +422,11 @@ void bind_mesh(nb::module_& module) {
         },
         nb::arg("colors"), nb::sig("def unit_colors(colors: numpy.typing.ArrayLike) -> numpy.ndarray"),
         "Colours as Mesh.C takes them, 0 to 1.");
+    module.def("cut_polygons", cut_polygons, nb::arg("V").none(), nb::arg("corners"), nb::arg("sizes"),
+               nb::sig("def cut_polygons(V: numpy.typing.ArrayLike | None, corners: numpy.typing.ArrayLike, "
+                       "sizes: numpy.typing.ArrayLike) -> tuple[numpy.ndarray, numpy.ndarray]"),
+               "m x 3 vertex indices of the triangles of polygons, and the polygon of each. `corners` holds "
+               "the vertex indices of all polygons, `sizes` how many each has.");
     module.def("readable_mesh_extensions", [] { return released([] { return io::readable_extensions(); }); });
 }
 

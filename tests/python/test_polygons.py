@@ -1,0 +1,68 @@
+"""Faces of more than three corners that are given as arrays: how they are cut, and that their diagonals are not shown."""
+
+import types
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import as_mesh
+
+#: An arrow of area 4 - 1.5 (its notch is a triangle of width 2 and height 1.5), and a dart of two triangles of area 0.3.
+ARROW = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 0.5, 0], [0, 2, 0]])
+DART = np.array([[0, 0, 0], [2, 0, 0], [0.3, 0.3, 0], [0, 2, 0]])
+
+
+def signed_areas(mesh) -> np.ndarray:
+    a, b, c = (np.asarray(mesh.V, float)[mesh.F[:, k]] for k in range(3))
+    return np.cross(b - a, c - a)[:, 2] / 2
+
+
+def like_pyvista(V, polygon):
+    faces = np.array([len(polygon), *polygon])
+    return types.SimpleNamespace(points=V, faces=faces, point_data={}, n_points=len(V), is_all_triangles=False)
+
+
+@pytest.mark.parametrize("made", [
+    lambda V, polygon: (V, [polygon]),
+    lambda V, polygon: (V, np.array([polygon])),
+    lambda V, polygon: (V, np.array([polygon], float)),
+    lambda V, polygon: (V + [691_000, 5_335_000, 0], [polygon]),
+    lambda V, polygon: (V, [polygon, [0, 1, 2]]),
+    lambda V, polygon: {"faces": [polygon], "V": V.tolist()},
+    like_pyvista,
+], ids=["list", "array", "floats", "far", "ragged", "dict", "pyvista"])  # fmt: skip
+@pytest.mark.parametrize("V, area", [(ARROW, 2.5), (DART, 0.6)], ids=["arrow", "dart"])
+def test_concave_polygons_are_covered_once(made, V, area):
+    for first in range(len(V)):
+        mesh = as_mesh(made(V, np.roll(range(len(V)), first).tolist()))
+        areas = signed_areas(mesh)[: len(V) - 2]
+        assert (areas > 0).all(), f"a triangle is turned over, beginning at {first}"
+        # 0.3 in float32 is off by 1e-8.
+        np.testing.assert_allclose(areas.sum(), area, atol=1e-6)
+        np.testing.assert_array_equal(mesh.source_face[: len(V) - 2], 0)
+
+
+def test_convex_polygons_are_cut_from_their_first_corner():
+    V = np.array([[np.cos(a), np.sin(a), 0] for a in np.arange(6) * np.pi / 3])
+    np.testing.assert_array_equal(as_mesh((V, [[1, 2, 3, 4, 5, 0]])).F, [[1, 2, 3], [1, 3, 4], [1, 4, 5], [1, 5, 0]])
+    mixed = as_mesh((V, [[0, 1, 2, 3], [3, 4, 5]]))
+    np.testing.assert_array_equal(mixed.F, [[0, 1, 2], [0, 2, 3], [3, 4, 5]])
+    np.testing.assert_array_equal(mixed.source_face, [0, 0, 1])
+    assert as_mesh((V, np.zeros((0, 4), int))).F.shape == (0, 3)
+
+
+@pytest.mark.parametrize("F, message", [
+    ([[0, 1, 2, 4]], "array F: expected vertex indices from 0 to 3, got 4 in row 0 of 1"),
+    ([[0, 1, 2], [0, 1, 2, -1]], "array F: expected vertex indices from 0 to 3, got -1 in row 1 of 2"),
+    (np.array([[0, 1, 2, 0.5]]), "array F: expected whole numbers"),
+    ([[0, 1, 2], [0, 1]], "polygons of at least 3 corners each"),
+])
+def test_wrong_corners_are_named(F, message):
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        as_mesh({"V": DART, "F": F})
+
+
+def test_polygons_without_vertices_are_refused():
+    with pytest.raises(easypbr.ArgumentError, match="from 0 to -1, got 0 in row 0 of 1"):
+        as_mesh({"F": [[0, 1, 2, 3]]})
