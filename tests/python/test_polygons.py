@@ -66,3 +66,25 @@ def test_wrong_corners_are_named(F, message):
 def test_polygons_without_vertices_are_refused():
     with pytest.raises(easypbr.ArgumentError, match="from 0 to -1, got 0 in row 0 of 1"):
         as_mesh({"F": [[0, 1, 2, 3]]})
+
+
+def white_pixels(what, settings, **look) -> np.ndarray:
+    """Those that lines cover as a whole."""
+    look |= {"show_wireframe": True, "line_color": "#ffffff", "line_width": 3, "lit": False, "background": "#000000"}
+    picture = easypbr.render(what, size=(120, 120), samples=1, antialias="none", camera="front", settings=settings, **look)
+    return (picture[..., :3] == 255).all(axis=2)
+
+
+@pytest.mark.parametrize("settings", [{}, {"clip.box": [-9, 1.5, -9, 9, 9, 9]}], ids=["whole", "clipped"])
+@pytest.mark.parametrize("values", [
+    {"values": np.arange(16.0)},
+    {"labels": np.arange(16) % 3},
+    {"labels": np.arange(25) % 3},
+], ids=["values", "labels", "vertex labels"])  # fmt: skip
+def test_wireframes_of_coloured_polygons_have_no_diagonals(values, settings):
+    x, y = np.meshgrid(np.arange(5.0), np.arange(5.0))
+    corner = (5 * np.arange(4)[:, None] + np.arange(4)).reshape(-1, 1)
+    mesh = {"V": np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3), "F": corner + [0, 1, 6, 5]}
+    plain = white_pixels(mesh, settings, color="#404040")
+    assert plain.sum() > 1000
+    np.testing.assert_array_equal(white_pixels(mesh | values, settings), plain)

@@ -5,6 +5,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/cut.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/voxels.h"
 
 namespace easypbr::cut_test {
@@ -52,6 +53,27 @@ TEST(Cut, LeavesWhatIsOnThePositiveSide) {
         const Vec3 a = rest.V.row(rest.F(i, 0)), b = rest.V.row(rest.F(i, 1)), c = rest.V.row(rest.F(i, 2));
         EXPECT_GT((b - a).cross(c - a).z(), 0);
     }
+}
+
+// At x >= 0 the corners 1 and 2 of the square are left, each as two vertices that were split from one.
+TEST(Cut, KeepsWhichVerticesWereSplitFromOne) {
+    MeshData mesh = square();
+    const Array1i corners(Eigen::Map<const Eigen::VectorXi>(mesh.F.data(), 6));
+    repeat_vertices({corners.data(), 6}, mesh);
+    mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {3, 4, 5}});
+    Array1i faces, vertices;
+    const MeshData rest = cut(mesh, {keep_positive_x}, false, faces, vertices);
+    ASSERT_EQ(rest.source_vertex.rows(), rest.V.rows());
+    std::multiset<int32_t> whole;
+    std::set<int32_t> made;
+    for (Eigen::Index i = 0; i < rest.V.rows(); ++i)
+        if (const int32_t source = rest.source_vertex(i); source < 4)
+            whole.insert(source);
+        else
+            EXPECT_TRUE(made.insert(source).second) << "a vertex that the cut makes is none's";
+    // The first triangle has the corners 0, 1, 2, the second 0, 2, 3.
+    EXPECT_EQ(whole, (std::multiset<int32_t>{1, 2, 2}));
+    EXPECT_NO_THROW(validate(rest));
 }
 
 TEST(Cut, ByABoxLeavesItsArea) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/normals.h"
@@ -35,17 +36,37 @@ Segment segment_between(const MeshData& mesh, Eigen::Index a, Eigen::Index b) {
 }
 
 struct Edge {
-    uint64_t key;  ///< smaller index in the upper, larger in the lower half
-    int32_t face;
-    bool operator<(const Edge& other) const { return key != other.key ? key < other.key : face < other.face; }
+    uint64_t key;      ///< smaller vertex in the upper, larger in the lower half
+    int32_t from, to;  ///< corners in F
+    int32_t face() const { return from / 3; }
+    bool operator<(const Edge& other) const { return key != other.key ? key < other.key : from < other.from; }
 };
 
-std::vector<Edge> face_edges(const Array3i& F) {
-    std::vector<Edge> edges(size_t(F.size()));
+/// For each vertex the first one that was split from the same (source_vertex) and stands at the same place;
+/// empty: each is one of its own.
+std::vector<int32_t> united_vertices(const MeshData& mesh) {
+    const Array1i& source = mesh.source_vertex;
+    if (source.empty()) return {};
+    std::vector<int32_t> first(size_t(source.maxCoeff()) + 1, -1), united(size_t(source.rows()));
+    for (int32_t i = 0; i < int32_t(source.rows()); ++i) {
+        int32_t& known = first[size_t(source(i))];
+        if (known < 0) known = i;
+        united[size_t(i)] = mesh.V.row(known) == mesh.V.row(i) ? known : i;
+    }
+    return united;
+}
+
+std::vector<Edge> face_edges(const MeshData& mesh) {
+    const std::vector<int32_t> united = united_vertices(mesh);
+    const auto vertex = [&](int32_t corner) {
+        const int32_t own = mesh.F.data()[corner];
+        return uint64_t(united.empty() ? own : united[size_t(own)]);
+    };
+    std::vector<Edge> edges(size_t(mesh.F.size()));
     parallel_for(edges.size(), segment_grain, [&](size_t i) {
-        const size_t face = i / 3, corner = i % 3;
-        const uint64_t a = uint64_t(F.data()[i]), b = uint64_t(F.data()[3 * face + (corner + 1) % 3]);
-        edges[i] = {std::min(a, b) << 32 | std::max(a, b), int32_t(face)};
+        int32_t from = int32_t(i), to = int32_t(i % 3 == 2 ? i - 2 : i + 1);
+        if (vertex(from) > vertex(to)) std::swap(from, to);
+        edges[i] = {vertex(from) << 32 | vertex(to), from, to};
     });
     std::sort(edges.begin(), edges.end());
     return edges;
@@ -62,18 +83,18 @@ std::vector<Segment> edge_segments(const MeshData& mesh) {
 }
 
 std::vector<Segment> wireframe_segments(const MeshData& mesh) {
-    const std::vector<Edge> edges = face_edges(mesh.F);
+    const std::vector<Edge> edges = face_edges(mesh);
     const auto polygon = [&](const Edge& edge) {
-        return mesh.source_face.empty() ? edge.face : mesh.source_face(edge.face);
+        return mesh.source_face.empty() ? edge.face() : mesh.source_face(edge.face());
     };
     std::vector<Segment> segments;
     for (size_t first = 0, last; first < edges.size(); first = last) {
+        const Edge& edge = edges[first];
         bool inside = true;
-        for (last = first + 1; last < edges.size() && edges[last].key == edges[first].key; ++last)
-            inside &= polygon(edges[last]) == polygon(edges[first]);
+        for (last = first + 1; last < edges.size() && edges[last].key == edge.key; ++last)
+            inside &= polygon(edges[last]) == polygon(edge);
         if (last > first + 1 && inside) continue;
-        segments.push_back(segment_between(mesh, Eigen::Index(edges[first].key >> 32),
-                                           Eigen::Index(edges[first].key & 0xffffffffu)));
+        segments.push_back(segment_between(mesh, mesh.F.data()[edge.from], mesh.F.data()[edge.to]));
     }
     return segments;
 }

@@ -27,8 +27,9 @@ struct Segment {
 /// values. A segment with an end that has no value (NaN) has none.
 std::vector<Segment> edge_segments(const MeshData& mesh);
 
-/// Each edge between two faces once, likewise. Edges inside of a polygon of the file (source_face) are left
-/// out.
+/// Each edge between two faces once, likewise, in the colours of the first face. Vertices at one place that
+/// were split from one (source_vertex) count as one. Edges inside of a polygon of the file (source_face) are
+/// left out.
 std::vector<Segment> wireframe_segments(const MeshData& mesh);
 
 /// From each vertex along its normal, computed where the mesh has none; white.

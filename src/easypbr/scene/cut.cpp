@@ -66,6 +66,16 @@ Array1i sources_of(const std::vector<Mixture>& vertices) {
     return Array1i(std::move(from));
 }
 
+/// The sources of vertices that are left whole; what is mixed comes from none, and has a number of its own.
+Array1i continued_sources(const Array1i& source_vertex, const std::vector<Mixture>& vertices) {
+    if (source_vertex.empty()) return {};
+    int32_t next = source_vertex.maxCoeff();
+    Array1i::Dense source(Eigen::Index(vertices.size()));
+    for (size_t i = 0; i < vertices.size(); ++i)
+        source[Eigen::Index(i)] = vertices[i].weight[0] == 1 ? source_vertex(vertices[i].vertex[0]) : ++next;
+    return Array1i(std::move(source));
+}
+
 MeshData cut_points(const MeshData& mesh, const std::vector<uint8_t>& kept, Array1i& source) {
     std::vector<Mixture> vertices;
     for (size_t i = 0; i < kept.size(); ++i)
@@ -184,6 +194,7 @@ MeshData cut_surface(const MeshData& given, const std::vector<Eigen::Vector4d>& 
     out.E = array_of_rows<Array2i>(cutter.edges());
     out.parts = std::move(parts);
     source = array_of_rows<Array1i>(from);
+    out.source_vertex = continued_sources(mesh.source_vertex, cutter.vertices());
     vertices = sources_of(cutter.vertices());
     // Pieces of a face are one polygon, so that a wireframe shows no edges between them.
     Array1i::Dense polygon = source;

@@ -45,12 +45,8 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
 
 LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind,
                                  std::optional<float> normal_length) {
-    return {mesh.V.revision(),
-            mesh.E.revision(),
-            mesh.F.revision(),
-            mesh.N.revision(),
-            mesh.C.revision(),
-            mesh.UV.revision(),
+    return {{mesh.V.revision(), mesh.E.revision(), mesh.F.revision(), mesh.N.revision(), mesh.C.revision(),
+             mesh.UV.revision(), mesh.source_vertex.revision(), mesh.source_face.revision()},
             kind,
             normal_length};
 }

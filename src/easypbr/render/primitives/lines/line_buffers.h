@@ -1,6 +1,8 @@
 // Line segments on the device: 44 bytes each.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -32,8 +34,7 @@ class LineCache {
     }
 
   private:
-    using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, gpu::LineKind,
-                           std::optional<float>>;
+    using Key = std::tuple<std::array<uint64_t, 8>, gpu::LineKind, std::optional<float>>;
     static Key key_of(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
 
     RevisionCache<Key, LineBuffers> buffers_;

@@ -1,0 +1,40 @@
+#include "easypbr/gpu/line_segments.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace easypbr::gpu::line_segments_test {
+namespace {
+
+/// A square of two triangles, each with three vertices of its own; the second one is `apart` above the first.
+MeshData split_square(float apart) {
+    MeshData mesh;
+    mesh.V =
+        Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, apart}, {1, 1, apart}, {0, 1, apart}});
+    mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {3, 4, 5}});
+    mesh.source_vertex = Array1i(Array1i::Dense{{0}, {1}, {2}, {0}, {2}, {3}});
+    return mesh;
+}
+
+TEST(Wireframe, TakesVerticesThatWereSplitFromOneForOne) {
+    MeshData mesh = split_square(0);
+    EXPECT_EQ(wireframe_segments(mesh).size(), 5u) << "four sides and the diagonal";
+    mesh.source_face = Array1i(Array1i::Dense{{0}, {0}});
+    EXPECT_EQ(wireframe_segments(mesh).size(), 4u) << "the diagonal is inside of the polygon";
+    MeshData moved = split_square(1);
+    moved.source_face = mesh.source_face;
+    EXPECT_EQ(wireframe_segments(moved).size(), 6u) << "two triangles at different places";
+}
+
+TEST(Wireframe, HasTheColoursOfOneFaceAtEachEdge) {
+    MeshData mesh = split_square(0);
+    mesh.C = ArrayXf(ArrayXf::Dense{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}});
+    const std::vector<Segment> segments = wireframe_segments(mesh);
+    EXPECT_TRUE(std::ranges::all_of(segments, [](const Segment& s) { return s.color_a == s.color_b; }));
+    // Two sides and the diagonal, at which the red face comes first.
+    EXPECT_EQ(std::ranges::count(segments, Rgba8{255, 0, 0, 255}, &Segment::color_a), 3);
+}
+
+}  // namespace
+}  // namespace easypbr::gpu::line_segments_test
