@@ -142,6 +142,36 @@ TEST(Npz, ReadsWhatOthersCallTheirArrays) {
     EXPECT_EQ(mesh.L[2], 3);
 }
 
+TEST(Npz, NamesOfOneLetterCountByCase) {
+    const std::string numbers = npy("'<f4'", "(3,)", values<float>({4, 5, 6}));
+    std::vector<std::pair<std::string, std::string>> entries{{"v.npy", triangle}};
+    const std::vector<std::string> names{"b", "c", "e", "g", "i", "l", "n", "r", "s", "t", "u", "x"};
+    for (const std::string& name : names) entries.emplace_back(name + ".npy", numbers);
+    const MeshData mesh = read_archive(entries);
+    EXPECT_EQ(mesh.scalars.size(), names.size());
+    for (const std::string& name : names) EXPECT_EQ(scalar_named(mesh, name).values[2], 6) << name;
+    EXPECT_TRUE(mesh.B.empty() && mesh.I.empty() && mesh.L.empty() && mesh.C.empty() && mesh.E.empty());
+    const MeshData capitals =
+        read_archive({{"V.npy", triangle}, {"T.npy", triangle}, {"B.npy", numbers}, {"I.npy", numbers}});
+    EXPECT_TRUE(capitals.scalars.empty());
+    EXPECT_EQ(capitals.T(1, 0), 1);
+    EXPECT_EQ(capitals.B[2], 6);
+    EXPECT_EQ(capitals.I[2], 6);
+}
+
+// Four vertices and three faces: three values are those of the faces.
+TEST(Npz, ValuesOfFacesMayHaveNamesOfOneLetter) {
+    const MeshData mesh = read_archive(
+        {{"points.npy", npy("'<f4'", "(4, 3)", values<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}))},
+         {"f.npy", npy("'<i4'", "(3, 3)", values<int32_t>({0, 1, 2, 0, 2, 3, 0, 3, 1}))},
+         {"e.npy", npy("'<f4'", "(3,)", values<float>({4, 5, 6}))},
+         {"l.npy", npy("'<f4'", "(3,)", values<float>({7, 8, 9}))}});
+    EXPECT_EQ(mesh.F.rows(), 3);
+    EXPECT_EQ(scalar_named(mesh, "e").values[2], 6);
+    EXPECT_EQ(scalar_named(mesh, "l").values[2], 9);
+    EXPECT_TRUE(mesh.L.empty());
+}
+
 TEST(Npz, CutsPolygonsAndKeepsTheirValues) {
     const MeshData mesh =
         read_archive({{"V.npy", npy("'<f4'", "(4, 3)", values<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}))},

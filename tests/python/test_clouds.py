@@ -46,6 +46,15 @@ def test_archives_of_named_arrays(points, tmp_path, save):
     np.testing.assert_array_equal(mesh.scalars["area"], np.arange(333))
 
 
+def test_names_of_one_letter_are_those_of_dicts(points, tmp_path):
+    values = {letter: points[:, 0] + number for number, letter in enumerate("abcdeghijklmnopqrstuwxyz")}
+    np.savez(tmp_path / "a.npz", points=points, **values)
+    read, made = Mesh(tmp_path / "a.npz").scalars, easypbr.as_mesh({"points": points} | values).scalars
+    assert set(read) == set(made) == set(values)
+    for letter in values:
+        np.testing.assert_array_equal(read[letter], made[letter])
+
+
 def test_numpy_reads_what_is_written(points, tmp_path):
     mesh = Mesh()
     mesh.V = points + np.array([691_000.0, 5_335_000, 520])

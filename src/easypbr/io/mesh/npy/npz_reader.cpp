@@ -22,11 +22,12 @@ using Integers = Eigen::Matrix<int32_t, Eigen::Dynamic, 1>;
 /// Columns of an array without a meaning that become scalars each.
 constexpr size_t most_scalars = 16;
 
-const Names npz_positions{"v",      "vertices", "points", "xyz", "pos",        "position",   "positions",
-                          "coords", "coord",    "pc",     "pcd", "pointcloud", "point_cloud"};
-const Names face_names{"f", "faces", "triangles"};
-const Names edge_names{"e", "edges"};
-const Names npz_labels{"l", "labels", "label"};
+// Names of one letter count by case, as in dicts of Python: the others are scalars.
+const Names npz_positions{"V",         "v",      "vertices", "points", "xyz", "pos",        "position",
+                          "positions", "coords", "coord",    "pc",     "pcd", "pointcloud", "point_cloud"};
+const Names face_names{"F", "f", "faces", "triangles"};
+const Names edge_names{"E", "edges"};
+const Names npz_labels{"L", "labels", "label"};
 
 /// What an array for the points may be called, and what its columns are then.
 struct Role {
@@ -35,23 +36,33 @@ struct Role {
     size_t least_columns;
 };
 const std::vector<Role> roles{
-    {{"n", "normals", "normal"}, {"nx", "ny", "nz"}, 3},
-    {{"c", "colors", "color", "colours", "rgb", "rgba"}, {"red", "green", "blue", "alpha"}, 3},
+    {{"N", "normals", "normal"}, {"nx", "ny", "nz"}, 3},
+    {{"C", "colors", "color", "colours", "rgb", "rgba"}, {"red", "green", "blue", "alpha"}, 3},
     {{"uv", "uvs", "texcoords"}, {"u", "v"}, 2},
-    {{"t", "tangents"}, {"tx", "ty", "tz"}, 3},
-    {{"b", "bitangent_lengths"}, {"bitangent_length"}, 1},
+    {{"T", "tangents"}, {"tx", "ty", "tz"}, 3},
+    {{"B", "bitangent_lengths"}, {"bitangent_length"}, 1},
     {npz_labels, {"label"}, 1},
-    {{"i", "intensity", "intensities"}, {"intensity"}, 1}};
-
-bool is_any_of(const Names& names, std::string_view name) {
-    return std::ranges::find(names, name) != names.end();
-}
+    {{"I", "intensity", "intensities"}, {"intensity"}, 1}};
 
 struct NamedArray {
     std::string name, lower_name;
     Source source;
     NpyArray array;
 };
+
+bool is_called(const NamedArray& array, std::string_view name) {
+    return (name.size() == 1 ? array.name : array.lower_name) == name;
+}
+
+bool is_called(const NamedArray& array, const Names& names) {
+    return std::ranges::any_of(names, [&](std::string_view name) { return is_called(array, name); });
+}
+
+/// What the columns of an array without a role are called.
+std::vector<std::string> names_of_columns(const NamedArray& array, size_t columns) {
+    if (columns == 1 && array.name.size() == 1) return {scalar_field_name(array.name)};
+    return names_of_parts(array.name, columns);
+}
 
 /// All values of a plain array, row by row. `rounding`: counts what float32 makes of those of one column.
 template <class Values>
@@ -113,7 +124,7 @@ class NpzReader {
             array.array = parse_npy(array.source, entry.bytes);
             arrays_.push_back(std::move(array));
         } catch (const FormatError& error) {
-            if (is_any_of(npz_positions, array.lower_name)) throw;
+            if (is_called(array, npz_positions)) throw;
             log_warning(fmt::format("array '{}' is left out: {}", name, error.what()));
         }
     }
@@ -121,7 +132,7 @@ class NpzReader {
     const NamedArray* find(const Names& names) const {
         for (const std::string_view name : names)
             for (const NamedArray& array : arrays_)
-                if (array.lower_name == name) return &array;
+                if (is_called(array, name)) return &array;
         return nullptr;
     }
 
@@ -148,8 +159,8 @@ class NpzReader {
     void add_values(const NamedArray& named, std::vector<BinaryTable>& tables) {
         const NpyArray& array = named.array;
         const size_t rows = array.rows(), columns = array.columns();
-        if (is_any_of(face_names, named.lower_name)) return;
-        if (is_any_of(edge_names, named.lower_name)) return read_edges(named);
+        if (is_called(named, face_names)) return;
+        if (is_called(named, edge_names)) return read_edges(named);
         if (named.lower_name == "offset") return read_offset(named);
         if (array.is_structured()) return leave_out(named);
         if (rows != points_ && rows == faces_.rows && columns == 1) {
@@ -157,7 +168,7 @@ class NpzReader {
             return;
         }
         const auto role =
-            std::ranges::find_if(roles, [&](const Role& r) { return is_any_of(r.names, named.lower_name); });
+            std::ranges::find_if(roles, [&](const Role& r) { return is_called(named, r.names); });
         std::vector<std::string> names;
         if (role != roles.end()) {
             if (rows != points_ || columns < role->least_columns || columns > role->columns.size())
@@ -165,7 +176,7 @@ class NpzReader {
                                           role->least_columns));
             names.assign(role->columns.begin(), role->columns.begin() + long(columns));
         } else if (rows == points_ && columns <= most_scalars) {
-            names = names_of_parts(named.name, columns);
+            names = names_of_columns(named, columns);
         } else {
             return leave_out(named);
         }
@@ -219,7 +230,7 @@ class NpzReader {
         if (face_values_.empty()) return;
         tell_faces_from_vertices(mesh_);
         for (const NamedArray* named : face_values_) {
-            if (is_any_of(npz_labels, named->lower_name) && mesh_.L.empty())
+            if (is_called(*named, npz_labels) && mesh_.L.empty())
                 mesh_.L = of_triangles(values_of<Integers>(*named));
             else if (const std::string name = scalar_name(named->name); std::ranges::none_of(
                          mesh_.scalars, [&](const ScalarArray& s) { return s.name == name; }))
