@@ -111,4 +111,20 @@ TEST(TextureMapping, WrapsWithoutAPlaceAreNamedWhereCoordinatesLeaveTheImage) {
     EXPECT_FALSE(is_named("m.ply", Wrap::repeat, Wrap::repeat));
 }
 
+TEST(TextureMapping, FiltersWithoutAPlaceAreNamed) {
+    const TemporaryFolder folder;
+    io::save_image(*flat(1), folder / "t.png");
+    MeshData mesh = textured_square(folder / "t.png");
+    Texture& texture = mesh.materials[0].base_color_texture;
+    for (const char* name : {"m.obj", "m.ply"}) {
+        texture.filter = Filter::linear;
+        EXPECT_EQ(warnings_of(mesh, folder / name), "");
+        texture.filter = Filter::nearest;
+        EXPECT_NE(warnings_of(mesh, folder / name).find("no place for filters of textures: left out"),
+                  std::string::npos)
+            << name;
+    }
+    EXPECT_EQ(warnings_of(mesh, folder / "m.glb"), "") << "glTF has samplers";
+}
+
 }  // namespace easypbr::texture_mapping_test

@@ -100,7 +100,7 @@ void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh) {
 
 std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const MeshData& mesh) {
     if (mesh.UV.empty()) return {};
-    bool transforms = false, wraps = false;
+    bool transforms = false, wraps = false, filters = false;
     for (const MeshPart& part : parts_of(mesh))
         for (Texture Material::*const member : mapping.textures) {
             const Texture& texture = mesh.materials[size_t(part.material)].*member;
@@ -108,10 +108,12 @@ std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const 
             transforms = transforms || !mapping.has_transform(texture.uv_transform);
             wraps = wraps ||
                     (!mapping.has_wraps(texture.wrap_u, texture.wrap_v) && leaves_image(texture, part, mesh));
+            filters = filters || texture.filter != Filter::linear;
         }
     std::vector<std::string> names;
     if (transforms) names.emplace_back("texture transforms");
     if (wraps) names.emplace_back("wraps of textures");
+    if (filters) names.emplace_back("filters of textures");
     return names;
 }
 

@@ -25,7 +25,7 @@ const TextureMapping& ply_mapping();
 void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh);
 
 /// What of the mapping has no place in the format: names for a message. Wraps count where coordinates leave
-/// the image.
+/// the image. No format here has filters: those other than linear count.
 std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const MeshData& mesh);
 
 /// What a format has for textures, where one is written; null: none is.
