@@ -121,15 +121,21 @@ def _is_matrix(what: Any) -> bool:
 
 
 def _is_faces(what: Any, may_be_floats: bool) -> bool:
-    """Whether this may be the second of (V, F)."""
+    """Whether this may be the second of (V, F): vertex indices, as floats only if `may_be_floats`."""
     if what is None:
         return True
     if isinstance(what, (tuple, list)):
         is_corners = all(isinstance(face, (tuple, list, np.ndarray)) for face in what)
-        return is_corners and all(isinstance(i, (int, np.integer)) for face in what for i in face)
+        return is_corners and all(_is_index(i, may_be_floats) for face in what for i in face)
     if not _is_array(what) or len(getattr(what, "shape", ())) != 2:
         return False
     array = np.asarray(as_numpy(what))
     if array.dtype.kind in "iu":
         return True
     return may_be_floats and array.dtype.kind == "f" and (array.size == 0 or bool((array == np.floor(array)).all()))
+
+
+def _is_index(value: Any, may_be_float: bool) -> bool:
+    if isinstance(value, (int, np.integer)):
+        return True
+    return may_be_float and isinstance(value, (float, np.floating)) and float(value).is_integer()

@@ -125,9 +125,14 @@ def test_lists_of_anything_drawable(square, tmp_path):
 
 def test_two_arrays_are_vertices_and_faces_only_if_the_second_may_be_faces(square):
     V, F = square
-    for what in ((V, F), [V, F], (V, F.tolist()), (V, F.astype(float)), (V.tolist(), F.tolist())):
+    floats = F.astype(float)
+    for what in ((V, F), [V, F], (V, F.tolist()), (V, floats), (V, floats.tolist()), (V, list(floats)), (V.tolist(), F.tolist())):
         np.testing.assert_array_equal(as_mesh(what).F, F)
-    assert len(as_mesh([POINTS, POINTS]).children) == 2
+    # In a list floats are points, and in a tuple those that are not whole.
+    for what in ([POINTS, POINTS], [V, floats], [V, floats.tolist()], (V, (floats + 0.5).tolist())):
+        assert len(as_mesh(what).children) == 2
+    with pytest.raises(easypbr.ArgumentError, match="from 0 to 3, got 4 in row 1 of 2"):
+        as_mesh((V, [[0.0, 1.0, 2.0], [0.0, 2.0, 4.0]]))
 
 
 @pytest.mark.parametrize("faces", [np.array([[0, 1, 2, 3]]), [[0, 1, 2, 3]]])
