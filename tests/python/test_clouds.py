@@ -108,3 +108,35 @@ def test_numpy_reads_names_of_scalars_in_other_letters(tmp_path):
     rows, arrays = np.load(tmp_path / "c.npy"), np.load(tmp_path / "c.npz")
     for number, name in enumerate(["温度", "湿度"]):
         assert (rows[name] == np.arange(5) + number).all() and (arrays[name] == rows[name]).all()
+
+
+CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+
+
+@pytest.mark.parametrize("few, most", [(CORNERS, 0.01), (np.random.default_rng(0).uniform(-1, 1, (17, 3)), 0.02),
+                                       (np.random.default_rng(0).normal(size=(100, 3)), 0.12)])
+def test_few_points_are_dots(few, most):
+    """Each 4 to 10 pixels wide: 12 to 80 pixels of 320 x 240, less those that hide each other. None is cut at the border."""
+    drawn = easypbr.render(few, size=(320, 240), background="transparent")[..., 3] > 0
+    assert 6 * len(few) / drawn.size < drawn.mean() < most
+    assert not (drawn[[0, -1]].any() or drawn[:, [0, -1]].any())
+
+
+def test_points_beside_a_mesh_leave_it_seen():
+    mesh = easypbr.shapes.sphere(1, 64)
+    points = np.random.default_rng(0).uniform(-1, 1, (17, 3)) * 1.2
+    scene = easypbr.Scene()
+    scene.show(mesh, "mesh")
+    scene.show(Mesh(points), "points")
+    seen = easypbr.Viewer((320, 240), scene=scene).layers(["object_id"])["object_id"]
+    # "mesh" comes before "points". The discs are less than a thirtieth of the ball's picture, as 17 of 10 pixels are of 20,000.
+    assert (seen == 1).sum() > 10 * (seen == 2).sum() > 0
+
+
+def test_a_small_cloud_in_a_large_scene_is_seen():
+    scene = easypbr.Scene()
+    scene.show(easypbr.shapes.sphere(1, 64), "mesh")
+    scene.show(Mesh(np.array([[0, 0, 1.1], [0.02, 0, 1.1], [0, 0.02, 1.1]])), "points")
+    seen = easypbr.Viewer((640, 480), scene=scene).layers(["object_id"])["object_id"]
+    # Discs of 1.5 % of 0.03 would be a tenth of a pixel; three of 5 pixels, 4 apart, are 40 to 60 pixels.
+    assert (seen == 2).sum() > 20

@@ -41,7 +41,7 @@ def test_labels_of_points_are_the_tables_colours(samples, tone):
     view = viewer(cloud, tonemap=tone)
     picture = view.render(samples=samples)
     seen, expected = colors_by_element(view, cloud.L, table_of(cloud.label_map))
-    assert seen.mean() > 0.2
+    assert seen.mean() > 0.1
     assert (picture[seen][:, :3] == expected[seen]).all()
     # And nothing is mixed with them where they end.
     assert (picture[~seen][:, :3] == 217).all()

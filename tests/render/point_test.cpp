@@ -308,6 +308,32 @@ TEST(Spacing, OfRegularClouds) {
     EXPECT_EQ(point_spacing(Array3f(Array3f::Dense::Ones(1, 3))), 0);
 }
 
+TEST(AutomaticDiscs, AreAtMostAPartOfTheCloud) {
+    const auto diagonal = [](const Array3f& V) { return trimmed_bounds(V).diagonal().norm(); };
+    const Array3f few(random_points(300, 9)), many(random_points(20000, 9));
+    EXPECT_NEAR(automatic_discs(few).diameter / diagonal(few), 0.015, 1e-9);
+    EXPECT_EQ(automatic_discs(few).least, 1);
+    // Half in a volume; 4 %: its dimension is that of counted cells, 2.95 at least.
+    EXPECT_NEAR(automatic_discs(many).diameter / diagonal(many), 0.0075, 0.0003);
+    EXPECT_NEAR(automatic_discs(many).least, 0.5, 0.02);
+    // A cloud that becomes thin outwards is a volume as well.
+    std::mt19937 random(10);
+    std::normal_distribution<float> normal;
+    Array3f::Dense V(20000, 3);
+    for (Eigen::Index i = 0; i < V.size(); ++i) V.data()[i] = normal(random);
+    EXPECT_NEAR(automatic_discs(Array3f(V)).diameter / diagonal(Array3f(V)), 0.0075, 0.0003);
+}
+
+TEST(AutomaticDiscs, CloseTheHolesOfDenseSurfaces) {
+    const Array3f plane(grid(300, 1, [](double, double) { return 0.0; }));
+    const AutomaticDiscs discs = automatic_discs(plane);
+    EXPECT_EQ(discs.diameter, 1.5 * point_spacing(plane));
+    EXPECT_EQ(discs.diameter, discs.closing);
+    EXPECT_EQ(discs.least, 0);
+    EXPECT_EQ(automatic_discs(Array3f(Array3f::Dense::Ones(9, 3))).diameter, 0);
+    EXPECT_EQ(automatic_discs(Array3f(Array3f::Dense::Ones(1, 3))).centre, Vec3d(1, 1, 1));
+}
+
 TEST(Spacing, OutliersAreTrimmed) {
     Array3f::Dense V = random_points(5000, 9);
     V.row(17) << 1e6f, -1e6f, 3e5f;

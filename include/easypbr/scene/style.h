@@ -20,7 +20,7 @@ enum class ColorBy { solid, vertex, texture, label, scalar, height, normal, uv, 
 struct Style {
     Override<DrawMode> mode;     ///< automatic: natural_mode() in scene/draw_style.h
     Override<bool> visible;      ///< automatic: yes
-    Override<float> point_size;  ///< diameter in point_size_unit, above 0; automatic: the mean point spacing
+    Override<float> point_size;  ///< diameter in point_size_unit, above 0; automatic: by their spacing
     Override<SizeUnit> point_size_unit;  ///< automatic: pixels
     Override<PointShape> point_shape;    ///< automatic: round
     Override<float> surfel_scale;        ///< scale factor of the size of surfels, above 0; automatic: 1

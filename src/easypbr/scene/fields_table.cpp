@@ -299,7 +299,7 @@ void add_style(Table& table) {
         "tangents, lines for edges, and points for vertices alone");
     add("visible", &Style::visible, "Visibility of objects.", "yes");
     add("point_size", &Style::point_size, "Diameter of points, in point_size_unit.",
-        "the mean spacing of the points", "", {positive, unlimited});
+        "1.5 mean spacings of the points, at most 1.5 % of the cloud", "", {positive, unlimited});
     add("point_size_unit", &Style::point_size_unit,
         "Unit of point_size: pixels, or world units, which shrink with distance.", "pixels");
     add("point_shape", &Style::point_shape, "Shape of points.", "round");

@@ -16,4 +16,16 @@ Box3d trimmed_bounds(const Array3f& V);
 /// Zero for fewer than two points or when all are equal. Does not depend on the order of the points.
 double point_spacing(const Array3f& V);
 
+/// How large the discs of a cloud's points are where nobody says, in the units of V.
+struct AutomaticDiscs {
+    double diameter = 0;  ///< 0 where all points are at one place
+    double closing = 0;   ///< the diameter from which on neighbouring discs leave no hole between them
+    double least = 0;     ///< part of the least diameter in pixels of discs that leave holes; 0 where none do
+    Vec3d centre{0, 0, 0};  ///< of the cloud
+};
+
+/// The discs leave no hole, as far as they are readable: the diameter is at most 1.5 % of the diagonal of the
+/// points' box, and half as much in volumes of many points, whose discs would hide each other.
+AutomaticDiscs automatic_discs(const Array3f& V);
+
 }  // namespace easypbr

@@ -12,11 +12,19 @@ class SpacingCache {
         return spacings_.get(V.revision(), [&] { return point_spacing(V); });
     }
 
+    const AutomaticDiscs& discs(const Array3f& V) {
+        return discs_.get(V.revision(), [&] { return automatic_discs(V); });
+    }
+
     /// Drops what was not asked for since the last call.
-    void evict_unused() { spacings_.evict_unused(); }
+    void evict_unused() {
+        spacings_.evict_unused();
+        discs_.evict_unused();
+    }
 
   private:
     RevisionCache<uint64_t, double> spacings_;
+    RevisionCache<uint64_t, AutomaticDiscs> discs_;
 };
 
 }  // namespace easypbr

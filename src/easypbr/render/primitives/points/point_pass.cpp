@@ -19,8 +19,7 @@ void PointPass::draw_items(const Frame& frame, std::span<const DrawItem> items, 
     const Mat3 world_from_view = frame.camera.T_world_cam.linear().cast<float>();
     for (const DrawItem& item : items) {
         const PointBuffers& buffers = cache_.get(item.mesh());
-        const PointSplats splats =
-            splats_of(item, frame, item.style.point_size ? 0 : spacings_.get(item.mesh().V));
+        const PointSplats splats = splats_of(item, frame, spacings_);
         std::vector<std::string> defines = camera_defines(frame);
         if (buffers.normals) defines.emplace_back("NORMAL");
         if (item.with_colors) defines.emplace_back("VERTEX_COLOR");

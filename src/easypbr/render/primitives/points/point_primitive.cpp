@@ -31,8 +31,7 @@ bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet
         if (!surfaces.has_room(V.rows())) return false;
         const uint32_t first =
             surfaces.add(item, uint32_t(V.rows()), std::make_unique<PointSurface>(item, frame));
-        const double spacing = item.style.point_size ? 0 : spacings_.get(V);
-        PointSplats splats = splats_of(item, frame, spacing);
+        PointSplats splats = splats_of(item, frame, spacings_);
         splats.batches = batches_.draw(V);
         surfaces.buffer().draw_points(V, splats, first, content);
     }
@@ -58,8 +57,7 @@ ShadowShape PointPrimitive::shadow_shape(const DrawItem& item) {
 }
 
 ScreenReach PointPrimitive::screen_reach(const Frame& frame, const DrawItem& item) {
-    const PointSplats splats =
-        splats_of(item, frame, item.style.point_size ? 0 : spacings_.get(item.mesh().V));
+    const PointSplats splats = splats_of(item, frame, spacings_);
     const double pixels_per_unit = frame.clip_from_view(1, 1) * frame.size.y() / 2;
     return {double(splats.world_pixels) / pixels_per_unit / 2,
             double(std::max(splats.pixels, splats.least_pixels)) / 2};

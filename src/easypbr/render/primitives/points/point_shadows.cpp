@@ -25,7 +25,7 @@ bool is_pushed(const DrawItem& item) {
 double PointShadows::radius(const DrawItem& item) {
     const DrawStyle& style = item.style;
     if (style.point_size && style.point_size_unit == SizeUnit::world) return 0.5 * double(*style.point_size);
-    return 0.5 * spacings_per_splat * spacings_.get(item.mesh().V) * item.scale();
+    return 0.5 * spacings_.discs(item.mesh().V).diameter * item.scale();
 }
 
 void PointShadows::draw(const ShadowLayer& layer, const Casters& casters) {

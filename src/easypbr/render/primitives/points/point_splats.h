@@ -4,14 +4,11 @@
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/raster/visibility.h"
+#include "easypbr/scene/spacing_cache.h"
 
 namespace easypbr::render {
 
-/// Automatic splats of this many spacings leave no hole between the points of a square grid (its diagonal
-/// is 1.41).
-inline constexpr double spacings_per_splat = 1.5;
-
-/// Size and shape of an item's splats. `spacing` is the points' mean distance, in their own units.
-PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing);
+/// Size and shape of an item's splats.
+PointSplats splats_of(const DrawItem& item, const Frame& frame, SpacingCache& spacings);
 
 }  // namespace easypbr::render
