@@ -95,6 +95,64 @@ TEST(Up, OfTerrainIsTheAxisThatItIsThinAlong) {
     EXPECT_EQ(up_of(terrain(from_z("+x"))), "+y") << "as a wall";
 }
 
+namespace {
+
+/// z = f(x, y) over [-1, 1]^2 as a mesh of quads, but those of which a corner is not a number.
+template <class Height>
+Mesh height_field(Height&& f) {
+    constexpr int n = 80;
+    Array3f::Dense V(n * n, 3);
+    std::vector<std::array<int, 3>> faces;
+    for (int i = 0; i < n * n; ++i) {
+        const float x = float(i % n) * 2 / (n - 1) - 1, y = float(i / n) * 2 / (n - 1) - 1;
+        V.row(i) << x, y, f(x, y);
+    }
+    for (int i = 0; i < n * (n - 1); ++i)
+        if (i % n + 1 < n && std::isfinite(V(i, 2) + V(i + 1, 2) + V(i + n, 2) + V(i + n + 1, 2))) {
+            faces.push_back({i, i + 1, i + n + 1});
+            faces.push_back({i, i + n + 1, i + n});
+        }
+    V = V.array().isNaN().select(0.0f, V);
+    Array3i::Dense F(Eigen::Index(faces.size()), 3);
+    for (size_t i = 0; i < faces.size(); ++i) F.row(Eigen::Index(i)) << faces[i][0], faces[i][1], faces[i][2];
+    return Mesh(Array3f(V), Array3i(F));
+}
+
+Mesh y_up(const Mesh& mesh) {
+    Array3f::Dense V = mesh.V();
+    V.col(1).swap(V.col(2));
+    return Mesh(Array3f(V), mesh.F());
+}
+
+}  // namespace
+
+TEST(Up, OfAHeightFieldIsZ) {
+    const auto waves = [](float x, float y) { return 0.3f * std::sin(3 * x) * std::cos(2 * y); };
+    const auto gentle = [](float x, float y) { return 0.05f * std::sin(3 * x) * std::cos(2 * y); };
+    const auto peak = [](float x, float y) { return std::exp(-4 * (x * x + y * y)); };
+    for (const Mesh& mesh : {height_field(waves), height_field(gentle), height_field(peak)}) {
+        EXPECT_EQ(up_of(mesh), "+z");
+        EXPECT_EQ(up_of(cloud(mesh.V())), "+z");
+        EXPECT_EQ(up_of(y_up(mesh)), "+y");
+        EXPECT_EQ(up_of(cloud(y_up(mesh).V())), "+y");
+    }
+}
+
+TEST(Up, OfReliefsAndSheetsIsY) {
+    const float none = std::nanf("");
+    EXPECT_EQ(up_of(height_field([](float, float) { return 0.0f; })), "+y") << "a picture";
+    EXPECT_EQ(
+        up_of(height_field([&](float x, float y) { return x * x + y * y < 1 ? 1 - x * x - y * y : none; })),
+        "+y")
+        << "a mask, which is round";
+    EXPECT_EQ(up_of(height_field([&](float x, float) {
+                  return std::abs(x) < 0.03f ? none : x < 0 ? 0.0f : 1.0f;
+              })),
+              "+y")
+        << "cards at two depths";
+    EXPECT_EQ(up_of(height_field([](float x, float) { return x; })), "+y") << "a ramp";
+}
+
 TEST(Up, OfAMeshIsZWhereItStandsOnIt) {
     EXPECT_EQ(up_of(standing("+z")), "+z");
     EXPECT_EQ(up_of(standing("+y")), "+y");

@@ -134,6 +134,8 @@ struct AxisEvidence {
     double extent = 0;  ///< of the content, of its largest extent
     std::array<double, slab_count> slabs{};  ///< the part of `level` in each slab along the axis
     std::array<double, slab_count> mass{};   ///< part of all samples in each
+    double thin = 0;    ///< part of the samples in columns along the axis that hold a thin layer
+    double filled = 0;  ///< part of the columns over the rectangle of the content that hold samples
 
     double least_end() const { return *std::max_element(slabs.begin(), slabs.begin() + end_slabs); }
     /// The slab with the most level planes.
@@ -203,11 +205,15 @@ Plane plane_of(const Patch& patch) {
     return {patch.centre, {patch.is_level(0), patch.is_level(1), patch.is_level(2)}};
 }
 
+/// Of the grids of samples: their cells along the longest side hold about 16 samples of a surface.
+double cells_for(size_t samples) {
+    return std::clamp(std::sqrt(double(samples) / 16), 8.0, 64.0);
+}
+
 /// Of clouds: what is planar in a grid whose cells hold about ten points of a surface.
 std::vector<Plane> planes_of_cells(const std::vector<SurfacePoint>& points, const Box3d& bulk) {
     constexpr size_t least_points = 5;
-    const double cells = std::clamp(std::sqrt(double(points.size()) / 16), 8.0, 64.0);
-    const double size = bulk.diagonal().norm() / cells;
+    const double size = bulk.diagonal().norm() / cells_for(points.size());
     std::vector<std::pair<uint64_t, size_t>> order;
     for (size_t i = 0; i < points.size(); ++i) {
         const Vec3d& position = points[i].position;
@@ -239,6 +245,50 @@ size_t slab_at(const Box3d& bulk, int axis, const Vec3d& point) {
     return at > 0 ? std::min(slab_count - 1, size_t(at)) : 0;
 }
 
+using Columns = std::vector<std::pair<uint32_t, double>>;
+
+/// The samples' heights along an axis, each after the column of a grid over the other axes that it is in.
+Columns columns_along(int axis, const std::vector<SurfacePoint>& points, const Box3d& bulk, double size) {
+    Columns columns;
+    const auto cell = [&](const Vec3d& position, int across) {
+        const double last = std::ceil(bulk.sizes()[across] / size - 1e-6) - 1;
+        return uint32_t(std::clamp((position[across] - bulk.min()[across]) / size, 0.0, std::max(last, 0.0)));
+    };
+    for (const SurfacePoint& point : points)
+        if (bulk.contains(point.position))
+            columns.emplace_back(
+                cell(point.position, (axis + 1) % 3) << 16 | cell(point.position, (axis + 2) % 3),
+                point.position[axis]);
+    std::ranges::sort(columns);
+    return columns;
+}
+
+/// A layer is thin where it rises by less than three cells, 72 degrees, and a third of the content's height.
+double thin_part(int axis, const std::vector<SurfacePoint>& points, const Box3d& bulk) {
+    constexpr size_t least_points = 5;
+    const double side = std::max(bulk.sizes()[(axis + 1) % 3], bulk.sizes()[(axis + 2) % 3]);
+    const double size = side / cells_for(points.size());
+    const double most = std::min(3 * size, bulk.sizes()[axis] / 3);
+    const Columns columns = columns_along(axis, points, bulk, size);
+    size_t thin = 0, all = 0;
+    for (size_t begin = 0, end = 0; begin < columns.size(); begin = end) {
+        while (end < columns.size() && columns[end].first == columns[begin].first) ++end;
+        if (end - begin < least_points) continue;
+        all += end - begin;
+        if (columns[end - 1].second - columns[begin].second <= most) thin += end - begin;
+    }
+    return double(thin) / double(std::max<size_t>(1, all));
+}
+
+double filled_part(int axis, const std::vector<SurfacePoint>& points, const Box3d& bulk) {
+    constexpr double cells = 16;
+    const double u = bulk.sizes()[(axis + 1) % 3], v = bulk.sizes()[(axis + 2) % 3];
+    const double size = std::max(u, v) / cells;
+    Columns columns = columns_along(axis, points, bulk, size);
+    const auto others = std::ranges::unique(columns, {}, &Columns::value_type::first);
+    return double(columns.size() - others.size()) / (std::ceil(u / size - 1e-6) * std::ceil(v / size - 1e-6));
+}
+
 /// Nothing where the content is too small or flat, or has too few planes to judge by.
 std::optional<UpEvidence> evidence_of(const std::vector<SurfacePoint>& points, bool of_faces) {
     constexpr double flat = 0.03;
@@ -258,6 +308,8 @@ std::optional<UpEvidence> evidence_of(const std::vector<SurfacePoint>& points, b
             if (plane.level[size_t(axis)])
                 of.slabs[slab_at(bulk, axis, plane.centre)] += 1 / double(planes.size());
         of.level = std::accumulate(of.slabs.begin(), of.slabs.end(), 0.0);
+        of.thin = thin_part(axis, points, bulk);
+        of.filled = filled_part(axis, points, bulk);
     }
     return evidence;
 }
@@ -275,6 +327,15 @@ bool hangs(const AxisEvidence& axis) {
 bool stands(const AxisEvidence& axis) {
     const size_t peak = axis.peak();
     return peak < end_slabs && axis.mass_below(peak) <= stray;
+}
+
+/// z = f(x, y) over a rectangle, without gaps along z: sheets one behind the other are none.
+bool is_height_field(const UpEvidence& evidence) {
+    constexpr double least_thin = 0.9, most_thin_beside = 0.5, least_filled = 0.95;
+    const AxisEvidence &x = evidence[0], &y = evidence[1], &z = evidence[2];
+    const auto empty_slabs = std::ranges::count(z.mass, 0.0);
+    return z.thin >= least_thin && std::max(x.thin, y.thin) <= most_thin_beside && z.filled >= least_filled &&
+           empty_slabs <= 2;
 }
 
 /// Scans have floors, terraces and ground. The axis of most level surfaces is up where it is clearly one.
@@ -335,6 +396,7 @@ std::string inferred_up(const SceneSnapshot& scene) {
         scene.objects, [](const SceneSnapshot::Object& object) { return !object.mesh->F.empty(); });
     const auto evidence = evidence_of(sampled(scene, has_faces), has_faces);
     if (!evidence) return "+y";
+    if (is_height_field(*evidence)) return "+z";
     return has_faces ? up_of_mesh(*evidence) : up_of_cloud(*evidence);
 }
 
