@@ -274,7 +274,7 @@ std::vector<LogTick> thinned(const std::vector<LogTick>& ticks, size_t most) {
     return kept;
 }
 
-std::vector<Tick> written(const std::vector<LogTick>& log_ticks) {
+std::vector<Tick> ticks_with_text(const std::vector<LogTick>& log_ticks) {
     const bool plain = log_ticks.front().exponent >= -3 && log_ticks.back().exponent < 6;
     std::vector<Tick> ticks;
     for (const LogTick& tick : log_ticks)
@@ -301,10 +301,10 @@ std::vector<Tick> ticks_of(const ValueRange& range, int most) {
     if (range.scale == ColorScale::linear) return linear;
     constexpr size_t enough = 3;  // of 1, 2 and 5, before other ticks are looked for
     const std::vector<LogTick> fine = log_ticks(range.min, range.max), powers = powers_of_ten(fine);
-    if (fine.size() >= enough && fine.size() <= size_t(most)) return written(fine);
+    if (fine.size() >= enough && fine.size() <= size_t(most)) return ticks_with_text(fine);
     if (linear.size() > 1 && has_room(linear, range, most)) return linear;
-    if (powers.size() > 1) return written(thinned(powers, size_t(most)));
-    return fine.empty() ? linear : written(thinned(fine, size_t(most)));
+    if (powers.size() > 1) return ticks_with_text(thinned(powers, size_t(most)));
+    return fine.empty() ? linear : ticks_with_text(thinned(fine, size_t(most)));
 }
 
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {

@@ -1,6 +1,7 @@
 #include "easypbr/scene/draw_style.h"
 
 #include "easypbr/core/recent_values.h"
+#include "easypbr/scene/enum_names.h"
 #include "easypbr/scene/spacing.h"
 
 namespace easypbr {
@@ -38,6 +39,12 @@ double voxel_size_of(const MeshData& mesh, const DrawStyle& style) {
 }
 
 }  // namespace
+
+template <>
+const std::vector<std::string>& detail::enum_names<DrawMode>() {
+    static const std::vector<std::string> names = {"mesh", "points", "surfels", "lines", "voxels", "splats"};
+    return names;
+}
 
 DrawMode natural_mode(const MeshData& mesh) {
     if (mesh.voxel_size > 0) return DrawMode::voxels;

@@ -53,11 +53,6 @@ const std::vector<std::string>& enum_names<AlphaMode>() {
     return names;
 }
 template <>
-const std::vector<std::string>& enum_names<DrawMode>() {
-    static const std::vector<std::string> names = {"mesh", "points", "surfels", "lines", "voxels", "splats"};
-    return names;
-}
-template <>
 const std::vector<std::string>& enum_names<PointShape>() {
     static const std::vector<std::string> names = {"round", "square"};
     return names;

@@ -63,8 +63,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const SurfaceOutputs outputs{.ids = contents.ids,
                                  .extensions = contents.ids || contents.paths ? 0 : opaque.extensions(),
                                  .whole = (contents.ground || has_layers) && native_shading_};
-    if (with_overlay) targets_.add_overlay();
-    if (outputs.extensions) targets_.add_extensions();
+    add_targets(with_overlay, outputs.extensions != 0);
 
     const PixelRect drawn =
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
@@ -102,6 +101,11 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     draw_effects(frame, opaque, {.native = pass.empty(), .overlay_only = contents.only_layers}, lit);
     return lit;
+}
+
+void Pipeline::add_targets(bool overlay, bool extensions) {
+    if (overlay) targets_.add_overlay();
+    if (extensions) targets_.add_extensions();
 }
 
 void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,

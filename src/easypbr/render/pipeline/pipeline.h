@@ -145,6 +145,7 @@ class Pipeline {
     void occlude(const Frame& frame, bool native, const AmbientOcclusionPass::Surfaces& surfaces);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
+    void add_targets(bool overlay, bool extensions);
     /// Empties the overlay, and draws the surfaces that are shown past light.
     void begin_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents, bool native);
     /// The first pass after the lighting that only the driver can do; empty where there is none.
