@@ -89,6 +89,38 @@ TEST(Npy, ReadsStructuredArraysByTheirNames) {
     EXPECT_EQ(mesh.scalars.size(), 1u);
 }
 
+TEST(Npy, ReadsPackedColorsOfStructuredArrays) {
+    const uint32_t bits = 0x80ff3300;  // Alpha 128, red 255, green 51, blue 0.
+    const Vec4 color(1, 0.2f, 0, float(128 / 255.0));
+    const std::string data = Bytes().add_all({1.0f, 2.0f, 3.0f}).add(bits).str();
+    for (const std::string order : {"<", ">"})
+        for (const std::string type : {"f4", "u4", "i4"})
+            for (const std::string name : {"rgb", "rgba"}) {
+                std::string descr;
+                for (const char* axis : {"x", "y", "z"})
+                    descr += "('" + std::string(axis) + "', '" + order + "f4'), ";
+                descr = "[" + descr + "('" + name + "', '" + order + type + "')]";
+                const std::string array = npy(descr, "(1,)", order == "<" ? data : reversed(data, 4));
+                for (const MeshData& mesh : {read(array), read_archive({{"points.npy", array}})}) {
+                    EXPECT_EQ(Vec3(mesh.V.row(0)), Vec3(1, 2, 3)) << descr;
+                    ASSERT_EQ(mesh.C.cols(), name == "rgba" ? 4 : 3) << descr;
+                    EXPECT_EQ(Vec3(mesh.C.row(0).head(3)), Vec3(color.head(3))) << descr;
+                    EXPECT_EQ(mesh.C.row(0)[mesh.C.cols() - 1], color[mesh.C.cols() - 1]) << descr;
+                    EXPECT_TRUE(mesh.scalars.empty()) << descr;
+                }
+            }
+}
+
+TEST(Npy, NamedColorsWinOverPackedOnes) {
+    const std::string descr =
+        "[('xyz', '<f4', (3,)), ('rgb', '<f4'), ('r', '|u1'), ('g', '|u1'), ('b', '|u1')]";
+    const std::string data =
+        Bytes().add_all({1.0f, 2.0f, 3.0f}).add(0x00ff0000u).add_all<uint8_t>({0, 255, 0}).str();
+    const MeshData mesh = read(npy(descr, "(1,)", data));
+    EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(0, 1, 0));
+    EXPECT_TRUE(mesh.scalars.empty());
+}
+
 TEST(Npy, KeepsMillimetres) {
     Bytes data;
     for (int i = 0; i < 100; ++i) data.add_all<double>({691'000.125 + i, 5'335'000.25 + 0.001 * i, 520.5});

@@ -1,4 +1,5 @@
 #include <array>
+#include <bit>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,32 @@ TEST(Ply, AlphaOfAnotherTypeLeavesColorsAsTheyAre) {
         EXPECT_FLOAT_EQ(mesh.C(0, 0), 200 / 255.0f) << format;
         EXPECT_FLOAT_EQ(mesh.C(0, 3), 1) << format;
         EXPECT_FLOAT_EQ(mesh.C(1, 3), 0.2f) << format;
+    }
+}
+
+TEST(Ply, ReadsPackedColors) {
+    for (const std::string& format : formats) {
+        for (const std::string type : {"float", "uint", "int"}) {
+            PlyBuilder ply(format);
+            ply.header("element vertex 2\nproperty float x\nproperty float y\nproperty float z")
+                .header("property " + type + " rgb")
+                .end_header();
+            for (const uint32_t bits : {0x00ff3300u, 0x0000ff66u})
+                ply.values("float", {1, 2, 3})
+                    .value(type, type == "float" ? double(std::bit_cast<float>(bits)) : double(bits))
+                    .end_row();
+            const MeshData mesh = read(ply.text());
+            ASSERT_EQ(mesh.C.cols(), 3) << format << " " << type;
+            EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(1, 0.2f, 0)) << format << " " << type;
+            EXPECT_EQ(Vec3(mesh.C.row(1)), Vec3(0, 1, 0.4f)) << format << " " << type;
+            EXPECT_TRUE(mesh.scalars.empty()) << format << " " << type;
+        }
+        PlyBuilder ply(format);
+        ply.header("element vertex 1\nproperty float x\nproperty float y\nproperty float z")
+            .header("property int rgba")
+            .end_header();
+        ply.values("float", {1, 2, 3}).value("int", int32_t(0xff0000ffu)).end_row();
+        EXPECT_EQ(Vec4(read(ply.text()).C.row(0)), Vec4(0, 0, 1, 1)) << format;
     }
 }
 

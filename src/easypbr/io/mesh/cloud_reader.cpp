@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "easypbr/scene/offset.h"
 
 namespace easypbr::io {
@@ -159,7 +161,7 @@ MeshData CloudStream::finish() {
     return state_->cloud.mesh();
 }
 
-MeshData read_text_cloud(const Source& source, const TextRows& rows, const Element& element, TextBits* bits) {
+MeshData read_text_cloud(const Source& source, const TextRows& rows, const Element& element) {
     if (element.count > rows.count())
         fail_at_line(source, source.end(),
                      fmt::format("truncated: {} points expected, but the file ends after {}", element.count,
@@ -169,10 +171,6 @@ MeshData read_text_cloud(const Source& source, const TextRows& rows, const Eleme
     cloud.add(elements);
     cloud.make_arrays();
     cloud.recentre(sample_text_positions(rows, elements, cloud.position()));
-    if (bits && bits->property) {
-        bits->bits.resize(element.count);
-        cloud.plans(0)[0].columns[*bits->property].bits = bits->bits.data();
-    }
     read_text_elements(source, rows, cloud.plans(0));
     return cloud.mesh();
 }

@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "easypbr/io/tables/element_table.h"
@@ -47,14 +46,7 @@ class CloudStream {
     std::unique_ptr<State> state_;
 };
 
-/// A property of text that is read as the 32 bits it stands for (see Column::bits), one for each row.
-struct TextBits {
-    std::optional<size_t> property;
-    std::vector<uint32_t> bits;
-};
-
-/// The same for text, with one element. The property that `bits` names has no other meaning.
-MeshData read_text_cloud(const Source& source, const TextRows& rows, const Element& element,
-                         TextBits* bits = nullptr);
+/// The same for text, with one element.
+MeshData read_text_cloud(const Source& source, const TextRows& rows, const Element& element);
 
 }  // namespace easypbr::io

@@ -31,6 +31,14 @@ void count_rounding(const ValueBlock& block, ScalarType type, bool swap, const C
     column.rounding->add(counts);
 }
 
+/// Copies a block of scalars to the column's places from `place` on.
+void copy_scalars(const ValueBlock& block, ScalarType type, bool swap, const Column& column, size_t place) {
+    if (column.floats) copy_values(block, type, swap, column.floats + place);
+    if (column.doubles) copy_values(block, type, swap, column.doubles + place);
+    if (column.integers) copy_values(block, type, swap, column.integers + place);
+    if (column.bits) copy_bits(block, swap, column.bits + place);
+}
+
 /// Reads one element; keeps what the functions below share.
 class ElementReader {
   public:
@@ -145,12 +153,7 @@ class ElementReader {
                                    property.count_type ? widths[i] : column.stride,
                                    column.scale,
                                    column.shift};
-            if (column.floats)
-                copy_values(block, property.type, swap_, column.floats + begin * column.stride);
-            if (column.doubles)
-                copy_values(block, property.type, swap_, column.doubles + begin * column.stride);
-            if (column.integers)
-                copy_values(block, property.type, swap_, column.integers + begin * column.stride);
+            copy_scalars(block, property.type, swap_, column, begin * column.stride);
             count_rounding(block, property.type, swap_, column);
             if (column.indices)
                 copy_values(block, property.type, swap_, column.indices->values.data() + begin * widths[i]);
@@ -252,12 +255,8 @@ class ElementReader {
                 in += size_of(*property.count_type);
             }
             const ValueBlock block{in, 0, 1, width, 0, column.scale, column.shift};
-            if (column.floats) copy_values(block, property.type, swap_, column.floats + row * column.stride);
+            copy_scalars(block, property.type, swap_, column, row * column.stride);
             if (column.rounding) count_rounding(block, property.type, swap_, *column.rounding, counts[i]);
-            if (column.doubles)
-                copy_values(block, property.type, swap_, column.doubles + row * column.stride);
-            if (column.integers)
-                copy_values(block, property.type, swap_, column.integers + row * column.stride);
             if (column.indices)
                 copy_values(block, property.type, swap_,
                             column.indices->values.data() + column.indices->first[row]);
@@ -304,11 +303,8 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
             const ScalarType type = plan.element->properties[i].type;
             const Column& column = plan.columns[i];
             const ValueBlock block{in, stride, end - begin, 1, column.stride, column.scale, column.shift};
-            const size_t place = (first + begin) * column.stride;
-            if (column.floats) copy_values(block, type, swap, column.floats + place);
+            copy_scalars(block, type, swap, column, (first + begin) * column.stride);
             count_rounding(block, type, swap, column);
-            if (column.doubles) copy_values(block, type, swap, column.doubles + place);
-            if (column.integers) copy_values(block, type, swap, column.integers + place);
             in += size_of(type);
         }
     });

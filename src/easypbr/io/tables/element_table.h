@@ -52,7 +52,8 @@ struct Column {
     float* floats = nullptr;
     double* doubles = nullptr;    ///< the same; binary only
     int32_t* integers = nullptr;  ///< scalar target without scale: what does not fit becomes -1
-    /// Text only: the number's 32 bits, those of an integer or (where it is written as such) of a float.
+    /// Scalar target of types of 4 bytes: the number's bits. In text those of an integer or, where it is
+    /// written as such, of a float.
     uint32_t* bits = nullptr;
     size_t stride = 1;
     double scale = 1, shift = 0;

@@ -199,12 +199,12 @@ class ChunkReader {
 
     uint32_t bits(const char*& p, const Property& property) const {
         const char* first = p = skip_blanks(p, chunk_.end);
-        uint32_t value = 0;
+        int64_t value = 0;
         const auto result = std::from_chars(p, chunk_.end, value);
         p = result.ptr;
-        const bool is_integer = result.ec == std::errc() &&
+        const bool is_integer = result.ec == std::errc() && value >= INT32_MIN && value <= UINT32_MAX &&
                                 (p == chunk_.end || is_blank(*p) || *p == '\n' || *p == style_.delimiter);
-        return is_integer ? value : std::bit_cast<uint32_t>(number<float>(p = first, property));
+        return is_integer ? uint32_t(value) : std::bit_cast<uint32_t>(number<float>(p = first, property));
     }
 
     [[noreturn]] void fail_missing(const char* p, const Property& property) const {

@@ -107,6 +107,11 @@ void copy_values(const ValueBlock& block, ScalarType type, bool swap, To* out) {
     }
 }
 
+void copy_bits(const ValueBlock& block, bool swap, uint32_t* out) {
+    const auto same = [](uint32_t bits) { return bits; };
+    swap ? copy_each<uint32_t, true>(block, out, same) : copy_each<uint32_t, false>(block, out, same);
+}
+
 template void copy_values<float>(const ValueBlock&, ScalarType, bool, float*);
 template void copy_values<double>(const ValueBlock&, ScalarType, bool, double*);
 template void copy_values<int32_t>(const ValueBlock&, ScalarType, bool, int32_t*);

@@ -21,4 +21,7 @@ struct ValueBlock {
 template <class To>
 void copy_values(const ValueBlock& block, ScalarType type, bool swap, To* out);
 
+/// Copies the bits of numbers of 4 bytes, whatever they stand for.
+void copy_bits(const ValueBlock& block, bool swap, uint32_t* out);
+
 }  // namespace easypbr::io

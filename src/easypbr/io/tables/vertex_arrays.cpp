@@ -44,7 +44,9 @@ const Spellings label_names{{"label"},          {"labels"},         {"class"},
                             {"classification"}, {"semantic_label"}, {"semantic"}};
 const Spellings intensity_names{{"intensity"}, {"intensities"}, {"reflectance"}, {"i"}};
 
-/// What else arrays of NPZ files and packed colours of PCD are called.
+const Spellings packed_color_names{{"rgb"}, {"rgba"}};
+
+/// What else arrays of NPZ files and packed colours are called.
 const Spellings array_names{
     {"v"},      {"f"},       {"faces"}, {"triangles"}, {"e"},  {"edges"}, {"n"},      {"normals"},
     {"normal"}, {"c"},       {"rgb"},   {"rgba"},      {"uv"}, {"uvs"},   {"t"},      {"tangents"},
@@ -110,17 +112,20 @@ double color_scale(ScalarType type) {
     return type == ScalarType::uint8 ? 1 / 255.0 : type == ScalarType::uint16 ? 1 / 65535.0 : 1.0;
 }
 
-/// Returns the columns of C whose values tell their range, not their types.
-std::vector<int> plan_color_columns(const std::vector<VertexField>& fields, size_t count, ArrayXf::Dense& C) {
-    const auto color = find_spelling(fields, color_names);
-    plan_floats(fields, color, count, C);
-    std::vector<int> tell;
-    for (size_t k = 0; k < color.size(); ++k) {
-        const VertexField& field = fields[color[k]];
-        field.column->scale = color_scale(field.property.type);
-        if (field.column->scale == 1) tell.push_back(int(k));
-    }
-    return tell;
+/// Whether red, green, blue (and alpha) are the bytes of this number, whatever its type says. Numbers in
+/// texts without types have eight.
+bool is_packed_color(const Property& property) {
+    return has_name(packed_color_names, property.name) && size_of(property.type) == 4 && !property.is_extra;
+}
+
+/// Of the bits 0xAARRGGBB.
+ArrayXf::Dense unpack_colors(const std::vector<uint32_t>& bits, Eigen::Index parts) {
+    ArrayXf::Dense C(Eigen::Index(bits.size()), parts);
+    parallel_for(bits.size(), array_grain, [&](size_t i) {
+        for (Eigen::Index k = 0; k < parts; ++k)
+            C(Eigen::Index(i), k) = float((bits[i] >> (k == 3 ? 24 : 16 - 8 * k) & 255) * (1 / 255.0));
+    });
+    return C;
 }
 
 /// Brings these columns of colours to 0 .. 1.
@@ -158,6 +163,31 @@ void clear_missing(const Property& property, Array1f::Dense& values) {
 
 }  // namespace
 
+ColorArrays::ColorArrays(const std::vector<VertexField>& fields, size_t count) {
+    const auto color = find_spelling(fields, color_names);
+    plan_floats(fields, color, count, C_);
+    for (size_t k = 0; k < color.size(); ++k) {
+        const VertexField& field = fields[color[k]];
+        field.column->scale = color_scale(field.property.type);
+        if (field.column->scale == 1) ranged_.push_back(int(k));
+    }
+    const auto packed = std::ranges::find_if(
+        fields, [](const VertexField& field) { return is_packed_color(field.property); });
+    if (!color.empty() || packed == fields.end()) return;
+    packed_parts_ = lower(without_prefix(packed->property.name)) == "rgba" ? 4 : 3;
+    charge_memory(uint64_t(count) * uint64_t(packed_parts_) * sizeof(float), "its colours");
+    bits_.resize(count);
+    packed->column->bits = bits_.data();
+}
+
+ArrayXf::Dense ColorArrays::take() {
+    if (packed_parts_)
+        C_ = unpack_colors(bits_, packed_parts_);
+    else
+        normalize_columns(ranged_, C_);
+    return std::exchange(*this, {}).C_;
+}
+
 VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count) {
     const auto position = find_spelling(fields, position_names);
     if (position.empty()) return;
@@ -173,7 +203,7 @@ VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count)
     plan_floats(fields, find_spelling(fields, tangent_names), count, T_);
     plan_floats(fields, find_spelling(fields, bitangent_names), count, B_);
     plan_floats(fields, find_spelling(fields, uv_names), count, UV_);
-    ranged_colors_ = plan_color_columns(fields, count, C_);
+    colors_ = ColorArrays(fields, count);
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(Eigen::Index(count));
         fields[label[0]].column->integers = L_.data();
@@ -187,7 +217,8 @@ void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t c
     std::set<std::string> taken;
     std::map<std::string, int> numbers;  // Goes on where it ended, for there may be many of one name.
     for (const VertexField& field : fields) {
-        if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
+        if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_" ||
+            is_packed_color(field.property))
             continue;
         const std::string plain = scalar_name(field.property.name);
         std::string name = plain;
@@ -221,14 +252,13 @@ void VertexArrays::recentre_positions() {
 
 void VertexArrays::move_into(MeshData& mesh, const Source& source) {
     tidy_normals(N_);
-    normalize_columns(ranged_colors_, C_);
     tidy_uv(UV_);
     mesh.offset = offset_;
     mesh.V = std::move(V_);
     if (N_.size()) mesh.N = std::move(N_);
     if (T_.size()) mesh.T = std::move(T_);
     if (B_.size()) mesh.B = std::move(B_);
-    if (C_.size()) mesh.C = std::move(C_);
+    if (ArrayXf::Dense C = colors_.take(); C.size()) mesh.C = std::move(C);
     if (UV_.size()) mesh.UV = std::move(UV_);
     if (L_.size()) mesh.L = std::move(L_);
     if (I_.size()) mesh.I = std::move(I_);
@@ -246,25 +276,20 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         if (!plan.element->properties[i].count_type)
             fields.push_back({plan.element->properties[i], &plan.columns[i]});
     const auto rows = Eigen::Index(plan.element->count);
-    ranged_colors_ = plan_color_columns(fields, size_t(rows), C_);
+    colors_ = ColorArrays(fields, size_t(rows));
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(rows);
         fields[label[0]].column->integers = L_.data();
     }
     for (const VertexField& field : fields) {
         if (!field.column->is_skipped() || has_name(normal_names, field.property.name) ||
-            field.property.name == "texnumber")
+            is_packed_color(field.property) || field.property.name == "texnumber")
             continue;
         scalars_.push_back(
             {scalar_name(field.property.name), Array1f::Dense(rows), rounding_for(field.property)});
         field.column->floats = scalars_.back().values.data();
         field.column->rounding = scalars_.back().rounding.get();
     }
-}
-
-ArrayXf::Dense FaceArrays::take_colors() {
-    normalize_columns(ranged_colors_, C_);
-    return std::exchange(C_, {});
 }
 
 void FaceArrays::move_into(MeshData& mesh, const Source& source) {

@@ -19,10 +19,28 @@ struct VertexField {
     Column* column;
 };
 
+/// Colours while they are read: a field for each part, or all parts packed into one of four bytes, "rgb" or
+/// "rgba", as PCL and ROS have them.
+class ColorArrays {
+  public:
+    ColorArrays() = default;
+    /// Makes room for `count` rows and sets the fields' columns.
+    ColorArrays(const std::vector<VertexField>& fields, size_t count);
+
+    /// Colours in 0 .. 1, without rows where there are none. Leaves none here.
+    ArrayXf::Dense take();
+
+  private:
+    ArrayXf::Dense C_;
+    std::vector<int> ranged_;     ///< columns whose values tell their range; the types of others do
+    std::vector<uint32_t> bits_;  ///< of packed colours
+    Eigen::Index packed_parts_ = 0;
+};
+
 /// Recognises fields by their names, whatever the case: positions, normals, colours, texture coordinates,
-/// labels, intensities, tangents and bitangent lengths; every other field becomes scalars of its name ("_"
-/// and
-/// "" are skipped). "scalar_" before a name, as CloudCompare writes it, is left out.
+/// labels, intensities, tangents and bitangent lengths; every other field becomes scalars of its name ("_",
+/// "" and packed colours beside others are skipped). "scalar_" before a name, as CloudCompare writes it, is
+/// left out.
 class VertexArrays {
   public:
     /// Makes room for `count` rows and sets the fields' columns.
@@ -60,9 +78,8 @@ class VertexArrays {
     std::optional<std::array<size_t, 3>> position_;
     std::array<Column*, 3> position_columns_{};
     Vec3d offset_ = Vec3d::Zero();
-    std::vector<int> ranged_colors_;  ///< columns whose values tell their range; the types of others do
+    ColorArrays colors_;
     Array3f::Dense V_, N_, T_;
-    ArrayXf::Dense C_;
     Array2f::Dense UV_;
     Array1i::Dense L_;
     Array1f::Dense I_, B_;
@@ -78,7 +95,7 @@ class FaceArrays {
     explicit FaceArrays(ElementPlan& plan);
 
     /// The colours of the polygons, 0 .. 1, without rows where they have none. Leaves none here.
-    ArrayXf::Dense take_colors();
+    ArrayXf::Dense take_colors() { return colors_.take(); }
 
     /// Gives each triangle the values of its polygon; those that the vertices have too are left out. Where
     /// they would pass for values of the vertices, a vertex is added (tell_faces_from_vertices).
@@ -91,8 +108,7 @@ class FaceArrays {
         std::unique_ptr<Rounding> rounding;  ///< null where float32 has all values of the type
     };
 
-    ArrayXf::Dense C_;
-    std::vector<int> ranged_colors_;
+    ColorArrays colors_;
     Array1i::Dense L_;
     std::vector<Scalar> scalars_;
 };

@@ -17,10 +17,6 @@ struct PcdField {
     size_t count = 1;
 
     size_t size() const { return count * size_of(type); }
-    /// Colour in one number of 4 bytes.
-    bool is_packed_color() const {
-        return (name == "rgb" || name == "rgba") && count == 1 && size_of(type) == 4;
-    }
 };
 
 struct PcdHeader {

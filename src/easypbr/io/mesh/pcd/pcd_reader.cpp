@@ -15,34 +15,27 @@
 namespace easypbr::io {
 namespace {
 
-/// The properties that a field is read as. A packed colour is four bytes, from the lowest on blue, green, red
-/// and alpha, which "rgb" has no meaning for.
-std::vector<Property> binary_properties(const PcdField& field) {
-    const bool packed = field.is_packed_color();
-    std::vector<std::string> names = names_of_parts(field.name, field.count);
-    if (packed) {
-        const std::array colors{"blue", "green", "red", field.name == "rgba" ? "alpha" : "_"};
-        names.assign(colors.begin(), colors.end());
-    }
+std::vector<Property> properties_of_field(const PcdField& field) {
     std::vector<Property> properties;
-    for (std::string& name : names)
-        properties.push_back({std::move(name), packed ? ScalarType::uint8 : field.type, {}, 1, 0});
+    for (std::string& name : names_of_parts(field.name, field.count))
+        properties.push_back({std::move(name), field.type, {}, 1, 0});
     return properties;
 }
 
 /// One element: a point's fields stand together.
-std::vector<Element> elements_by_point(const PcdHeader& header) {
+Element points_of(const PcdHeader& header) {
     Element points{"point", header.points, {}};
     for (const PcdField& field : header.fields)
-        for (Property& property : binary_properties(field)) points.properties.push_back(std::move(property));
-    return {points};
+        for (Property& property : properties_of_field(field))
+            points.properties.push_back(std::move(property));
+    return points;
 }
 
 /// An element for each field: its values of all points stand together.
 std::vector<Element> elements_by_field(const PcdHeader& header) {
     std::vector<Element> elements;
     for (const PcdField& field : header.fields)
-        if (field.count > 0) elements.push_back({"point", header.points, binary_properties(field)});
+        if (field.count > 0) elements.push_back({"point", header.points, properties_of_field(field)});
     return elements;
 }
 
@@ -151,42 +144,14 @@ MeshData read_compressed(const Source& source, const PcdHeader& header) {
     return read_at_once(source, data, full, std::move(elements));
 }
 
-void set_packed_colors(const std::vector<uint32_t>& bits, bool alpha, MeshData& mesh) {
-    ArrayXf::Dense C(Eigen::Index(bits.size()), alpha ? 4 : 3);
-    parallel_for(bits.size(), 1 << 15, [&](size_t i) {
-        for (Eigen::Index k = 0; k < C.cols(); ++k)
-            C(Eigen::Index(i), k) = float((bits[i] >> (k == 3 ? 24 : 16 - 8 * k) & 255) * (1 / 255.0));
-    });
-    mesh.C = std::move(C);
-}
-
-MeshData read_ascii(const Source& source, const PcdHeader& header) {
-    Element points{"point", header.points, {}};
-    TextBits color;
-    bool alpha = false;
-    for (const PcdField& field : header.fields) {
-        if (field.is_packed_color() && !color.property) {
-            color.property = points.properties.size();
-            alpha = field.name == "rgba";
-            points.properties.push_back({"_", field.type, {}, 1, 0});
-            continue;
-        }
-        PcdField whole = field;
-        if (field.is_packed_color()) whole.name = "_";
-        for (Property& property : binary_properties(whole)) points.properties.push_back(std::move(property));
-    }
-    MeshData mesh = read_text_cloud(source, TextRows(source, header.body, {.comment = '#'}), points, &color);
-    if (color.property) set_packed_colors(color.bits, alpha, mesh);
-    return mesh;
-}
-
 MeshData read_points(const Source& source, const PcdHeader& header) {
     switch (header.data) {
         case PcdData::ascii:
-            return read_ascii(source, header);
+            return read_text_cloud(source, TextRows(source, header.body, {.comment = '#'}),
+                                   points_of(header));
         case PcdData::binary:
             return read_binary_cloud(source,
-                                     {{source, header.body, std::endian::little, elements_by_point(header)}});
+                                     {{source, header.body, std::endian::little, {points_of(header)}}});
         case PcdData::binary_compressed:
             break;
     }
