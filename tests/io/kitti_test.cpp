@@ -35,6 +35,29 @@ TEST(Kitti, ReadsScansWithoutLabels) {
     EXPECT_EQ(mesh->label_map, nullptr);
 }
 
+TEST(Kitti, ReadsScansOfNuScenes) {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "LIDAR_TOP__1532402927647951.pcd.bin";
+    Bytes bytes;
+    // 4 points of 20 bytes are 5 of 16, too: the name tells.
+    for (int i = 0; i < 4; ++i) bytes.add_all({float(i), 2.0f, 3.0f, 10.0f * float(i), float(31 - i)});
+    write_file(path, bytes.str());
+    const auto mesh = Mesh(path).snapshot();
+    ASSERT_EQ(mesh->V.rows(), 4);
+    EXPECT_EQ(Vec3(mesh->V.row(3)), Vec3(3, 2, 3));
+    EXPECT_EQ(mesh->I[3], 30);
+    EXPECT_EQ(scalar_named(*mesh, "ring").values[3], 28);
+
+    write_file(path, scan(3));
+    try {
+        Mesh mesh_of_kitti(path);
+        ADD_FAILURE() << "was read";
+    } catch (const FormatError& error) {
+        EXPECT_NE(std::string(error.what()).find("48 bytes are not a multiple of 20"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Kitti, FindsTheLabels) {
     const TemporaryFolder folder;
     fs::create_directories(folder / "00/velodyne");

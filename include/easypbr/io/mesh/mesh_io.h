@@ -36,13 +36,13 @@ struct LoadOptions {
 };
 
 /// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,
-/// NPZ, LAS and KITTI's BIN, and by way of assimp, in a process of its own, what that library reads. Points
-/// of clouds whose positions are not finite are left out with a warning that counts them. What is missing or
-/// unknown beside the geometry (a texture file, an element) is logged as a warning and left out. Throws
-/// FileError when the file cannot be read; FormatError, with line or byte, when it is empty, damaged, lies
-/// about its counts, has indices out of range or positions that are not finite, would take more memory than
-/// the options allow, or when its extension is unknown; NameError for a variant that a file with variants
-/// has not.
+/// NPZ, LAS and the BIN of KITTI and nuScenes, and by way of assimp, in a process of its own, what that
+/// library reads. Points of clouds whose positions are not finite are left out with a warning that counts
+/// them. What is missing or unknown beside the geometry (a texture file, an element) is logged as a warning
+/// and left out. Throws FileError when the file cannot be read; FormatError, with line or byte, when it is
+/// empty, damaged, lies about its counts, has indices out of range or positions that are not finite, would
+/// take more memory than the options allow, or when its extension is unknown; NameError for a variant that a
+/// file with variants has not.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The same from bytes in memory. The format is that of the options, else it is told from the content. `name`

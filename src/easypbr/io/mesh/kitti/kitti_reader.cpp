@@ -1,7 +1,9 @@
 // Scans of KITTI and SemanticKITTI (Behley et al., "SemanticKITTI: A Dataset for Semantic Scene Understanding
 // of LiDAR Sequences", 2019): x y z and remission as float32, and labels beside them, whose lower 16 bits are
-// the class and whose upper 16 bits the instance.
+// the class and whose upper 16 bits the instance. Scans of nuScenes (Caesar et al., "nuScenes: A Multimodal
+// Dataset for Autonomous Driving", 2020), whose names end in ".pcd.bin", have the laser's ring, too.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstring>
 
@@ -14,7 +16,20 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t point_size = 16, label_size = 4, grain = 1 << 16;
+constexpr size_t label_size = 4, grain = 1 << 16;
+
+/// What a point of a scan has, each as float32.
+struct ScanLayout {
+    std::string_view format;
+    std::vector<std::string_view> fields;
+
+    size_t point_size() const { return fields.size() * size_of(ScalarType::float32); }
+};
+
+ScanLayout layout_of(const fs::path& scan) {
+    if (extension_of(scan.stem()) == "pcd") return {"nuScenes", {"x", "y", "z", "intensity", "ring"}};
+    return {"KITTI", {"x", "y", "z", "intensity"}};
+}
 
 /// The scan's labels: sequences/00/velodyne/000000.bin has sequences/00/labels/000000.label; or beside it.
 std::optional<fs::path> find_labels(const fs::path& scan) {
@@ -61,13 +76,14 @@ void read_kitti_labels(const Source& source, MeshData& mesh) {
 
 MeshData read_kitti(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    if (source.bytes.size() % point_size)
+    const ScanLayout layout = layout_of(source.path);
+    if (source.bytes.size() % layout.point_size())
         fail(source,
-             fmt::format("no KITTI scan: {} bytes are not a multiple of {} (x, y, z, intensity as float32)",
-                         source.bytes.size(), point_size));
-    Element points{"point", source.bytes.size() / point_size, {}};
-    for (const char* name : {"x", "y", "z", "intensity"})
-        points.properties.push_back({name, ScalarType::float32, {}, 1, 0});
+             fmt::format("no {} scan: {} bytes are not a multiple of {} ({} as float32)", layout.format,
+                         source.bytes.size(), layout.point_size(), fmt::join(layout.fields, ", ")));
+    Element points{"point", source.bytes.size() / layout.point_size(), {}};
+    for (const std::string_view name : layout.fields)
+        points.properties.push_back({std::string(name), ScalarType::float32, {}, 1, 0});
     MeshData mesh = read_binary_cloud(source, {{source, source.begin(), std::endian::little, {points}}});
     mesh.source = source.path;
     if (const auto labels = find_labels(source.path)) {
