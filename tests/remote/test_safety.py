@@ -166,6 +166,17 @@ def test_one_controls_and_the_next_follows(server, connect):
     assert second.until_told("control", lambda control: control["clients"] == 1)["controls"]
 
 
+def test_who_stays_is_told_how_many_are_there(server, connect):
+    first, watcher, alone = connect(), connect(server.watch_url), connect()
+    first.until_known("control", lambda control: control["clients"] == 3)
+    alone.send("view", own=True, width=160, height=120)
+    alone.until_told("control", lambda control: control["view"] != 0)
+    alone.close()
+    assert first.until_told("control", lambda control: control["clients"] == 2)["controls"]
+    watcher.close()
+    assert first.until_told("control", lambda control: control["clients"] == 1)["controls"]
+
+
 def test_control_is_asked_for_and_given(connect):
     first, second = connect(), connect()
     first.until_exact()

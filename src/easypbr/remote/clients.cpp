@@ -28,9 +28,13 @@ void Clients::closed(ClientId client) {
     const auto found = clients_.find(client);
     if (found == clients_.end()) return;
     const ViewId view = found->second.view;
+    const bool was_admitted = found->second.admitted;
     clients_.erase(found);
     if (view != shared_view) groups_.erase(view);
-    if (groups_[shared_view].controller == client) leave_control(client);
+    if (groups_[shared_view].controller == client)
+        leave_control(client);
+    else if (was_admitted)
+        tell_control();
     inbox_.wake();
 }
 
