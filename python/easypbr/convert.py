@@ -19,6 +19,7 @@ ACCEPTED = (
 )
 #: Pairs of functions: whether an object is of a kind, and its mesh.
 _CONVERSIONS = [
+    (from_arrays.is_structured, from_arrays.of_fields),
     *from_trimesh.CONVERSIONS,
     *from_open3d.CONVERSIONS,
     *from_vtk.CONVERSIONS,
@@ -28,9 +29,10 @@ _CONVERSIONS = [
 
 
 def as_mesh(what: Any, strict: bool = False) -> Mesh:
-    """A Mesh of a path; a Mesh; points, n x 3 or with further columns as in a text file, n x 6 with colours; (V, F); a dict of
-    arrays (V, F, C, ..., or points, vertices, faces, colors, ...); a table with columns x, y and z; an object of trimesh,
-    Open3D, PyVista or VTK; or a list of these, whose meshes become children. Arrays may be any library's with DLPack.
+    """A Mesh of a path; a Mesh; points, n x 3 or with further columns as in a text file, n x 6 with colours, h x w x 3; (V, F); a
+    dict of arrays (V, F, C, ..., or points, vertices, faces, colors, ...); a table or a structured array with columns x, y and z;
+    an object of trimesh, Open3D, PyVista or VTK; or a list of these, whose meshes become children. Arrays may be any library's
+    with DLPack.
 
     A Mesh is returned as it is, in a list a copy of it; arrays are copied once. Points without a finite position are left out with a warning, or
     raise ArgumentError if `strict`, of a file FormatError. Raises ArgumentError for what cannot be drawn."""
@@ -106,7 +108,9 @@ def _is_rows(what: "tuple[Any, ...] | list[Any]") -> bool:
         return False
     if isinstance(first, (tuple, list)):
         return len(first) >= 3 and all(isinstance(x, (int, float, np.number)) for x in first)
-    return _is_array(first) and not hasattr(first, "vertices") and len(getattr(first, "shape", ())) == 1
+    if from_arrays.is_structured(first) or hasattr(first, "vertices"):
+        return False
+    return _is_array(first) and len(getattr(first, "shape", ())) == 1
 
 
 def _dtype(array: Any) -> str:

@@ -71,7 +71,8 @@ def test_further_columns_are_those_of_a_text_file(tmp_path):
 @pytest.mark.parametrize("what, message", [
     (POINTS[:, :2], "points: expected n x 3 positions, or n x 6 with colours, got 40 x 2"),
     (POINTS[0], "points: expected n x 3 positions"),
-    (np.zeros((2, 3, 4)), "got 2 x 3 x 4"),
+    (np.zeros((2, 3, 2)), "got 2 x 3 x 2"),
+    (np.zeros(4, [("a", "f4"), ("b", "f4")]), "a table: expected columns x, y and z, got a, b"),
     (np.array([["a", "b", "c"]]), "points: expected numbers, got <U1"),
     ([], "an empty list: there is nothing to show; expected a path"),
     (3, "cannot show a builtins.int: expected a path, an easypbr.Mesh, points"),

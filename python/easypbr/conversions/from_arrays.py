@@ -34,6 +34,10 @@ _COLUMNS = {
     **{word: "I" for word in NAMES["I"]},
     **{word: "L" for word in (*NAMES["L"], "class", "classification")},
 }  # fmt: skip
+#: What the values of a field of several are called, in tables.
+_PARTS: dict[str, list[tuple[str, ...]]] = {
+    "V": [("x", "y", "z")], "N": [("nx", "ny", "nz")], "C": [("r", "g", "b"), ("r", "g", "b", "a")],
+}  # fmt: skip
 #: Points that decide what the columns of an array hold.
 _SAMPLES = 1000
 
@@ -109,14 +113,15 @@ def edges(given: Any, count: int) -> Any:
 
 
 def of_points(array: Any, make: Maker) -> Mesh:
-    """A cloud of n x 3 positions; further columns are recognised as those of a text file without names are."""
+    """A cloud of n x 3 positions, or h x w x 3; further columns are recognised as those of a text file without names are."""
     points = np.asarray(as_numpy(array))
     if points.dtype.kind not in "fiu":
         raise ArgumentError(f"points: expected numbers, got {points.dtype}")
-    if points.ndim != 2 or points.shape[1] < 3:
+    if points.ndim < 2 or points.shape[-1] < 3:
         raise ArgumentError(
             f"points: expected n x 3 positions, or n x 6 with colours, got {' x '.join(map(str, points.shape)) or 'a number'}"
         )
+    points = points.reshape(-1, points.shape[-1])
     found: dict[str, Any] = {"V": points[:, :3]}
     scalars: dict[str, NDArray[Any]] = {}
     at, lost = 3, False
@@ -175,27 +180,73 @@ def is_table(what: Any) -> bool:
 
 
 def of_table(what: Any, make: Maker) -> Mesh:
-    """A cloud of a table's columns x, y and z; r, g, b (0 to 1 or 0 to 255), nx, ny, nz, intensity and label by their names;
-    other columns of numbers are scalars."""
+    """A cloud of a table's columns by their names."""
+    return _of_columns([(str(word), np.asarray(what[word])) for word in what.columns], make)
+
+
+def is_structured(what: Any) -> bool:
+    """A numpy array with fields by name."""
+    return isinstance(what, np.ndarray) and bool(what.dtype.names)
+
+
+def of_fields(array: NDArray[Any], make: Maker) -> Mesh:
+    """A cloud of the fields of a structured array, of any shape; a field of several values is as many columns."""
+    points = as_numpy(array).reshape(-1)
+    columns: list[tuple[str, NDArray[Any]]] = []
+    for word in points.dtype.names or ():
+        kind = points.dtype[word]
+        values = points[word].reshape(len(points), int(np.prod(kind.shape)))
+        columns += zip(_part_names(word, values.shape[1]), values.T)
+    return _of_columns(columns, make)
+
+
+def _part_names(word: str, count: int) -> tuple[str, ...]:
+    """The same as files of structured arrays have them."""
+    if count == 1:
+        return (word,)
+    kind = _CALLED.get(word, _CALLED.get(word.lower(), ""))
+    whole = (f"{word}_{i}" for i in range(count))
+    return next((parts for parts in _PARTS.get(kind, []) if len(parts) == count), tuple(whole))
+
+
+def _of_columns(given: list[tuple[str, NDArray[Any]]], make: Maker) -> Mesh:
+    """A cloud of columns x, y and z; r, g, b (0 to 1 or 0 to 255), nx, ny, nz, intensity and label by their names; others of
+    numbers are scalars. A column rgb or rgba of four bytes is a packed colour, as PCL and ROS have it."""
     columns: dict[str, NDArray[Any]] = {}
     scalars: dict[str, NDArray[Any]] = {}
+    packed: dict[str, NDArray[Any]] = {}
     words = []
-    for word in what.columns:
-        values = np.asarray(what[word])
+    for word, values in given:
         if values.dtype.kind == "b":
             values = values.astype(np.float32)
-        name = _COLUMNS.get(str(word).strip().lower())
+        name = _COLUMNS.get(word.strip().lower())
         if values.dtype.kind not in "iuf":
-            words.append(str(word))
+            words.append(word)
+        elif _is_packed_color(word, values):
+            packed = packed or _unpacked(word, values)
         elif name is not None and name not in columns:
             columns[name] = values
         else:
-            scalars[str(word)] = values
+            scalars[word] = values
     if not {"x", "y", "z"} <= set(columns):
-        raise ArgumentError(f"a table: expected columns x, y and z, got {', '.join(map(str, what.columns)) or 'none'}")
+        names = ", ".join(word for word, _ in given) or "none"
+        raise ArgumentError(f"a table: expected columns x, y and z, got {names}")
     if words:
         make.leave_out(f"columns that hold no numbers: {', '.join(words)}")
+    if not {"r", "g", "b"} <= set(columns):
+        columns |= packed
     return make.mesh(scalars=scalars | _incomplete(columns), **_arrays(columns))
+
+
+def _is_packed_color(word: str, values: NDArray[Any]) -> bool:
+    return word.strip().lower() in ("rgb", "rgba") and values.dtype.itemsize == 4
+
+
+def _unpacked(word: str, values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """The columns r, g, b (and a) of the bits 0xAARRGGBB, whatever type of number they pass for."""
+    bits = values.astype(values.dtype.newbyteorder("=")).view(np.uint32)
+    shifts = {"r": 16, "g": 8, "b": 0, "a": 24}
+    return {name: (bits >> shifts[name]).astype(np.uint8) for name in word.strip().lower()}
 
 
 def _arrays(columns: dict[str, NDArray[Any]]) -> dict[str, Any]:
