@@ -121,6 +121,24 @@ TEST(Npy, NamedColorsWinOverPackedOnes) {
     EXPECT_TRUE(mesh.scalars.empty());
 }
 
+TEST(Npy, WarnsWhereFloatTakesWhatTellsIntensitiesApart) {
+    const auto warnings_of = [](double first, double second) {
+        std::vector<std::string> warnings;
+        set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+        const MeshData mesh = read(npy("'<f8'", "(2, 4)", values<double>({0, 0, 0, first, 1, 1, 1, second})));
+        set_log_sink({});
+        EXPECT_EQ(mesh.I[1], float(second));
+        return warnings;
+    };
+    // Numbers of float32 are 128 apart at 1.7e9.
+    const auto warnings = warnings_of(1.7e9, 1.7e9 + 0.5);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("intensities are kept as float32, which holds 1700000000 and 1700000000.5"),
+              std::string::npos)
+        << warnings[0];
+    EXPECT_TRUE(warnings_of(0.25, 0.1).empty());
+}
+
 TEST(Npy, KeepsMillimetres) {
     Bytes data;
     for (int i = 0; i < 100; ++i) data.add_all<double>({691'000.125 + i, 5'335'000.25 + 0.001 * i, 520.5});

@@ -238,3 +238,21 @@ def test_scalars_that_float32_does_not_tell_apart_are_a_warning(caplog):
     caplog.clear()
     cloud.scalars["id"] = np.full(1000, 5, np.int64) + np.arange(1000) * 2**40 + 1
     assert caplog.text.count("'id'") == 1
+
+
+def test_intensities_that_float32_does_not_tell_apart_are_a_warning(caplog, tmp_path):
+    stamps = 1.7e9 + np.linspace(0, 60, 1000)
+    points = np.random.default_rng(1).random((1000, 3))
+    cloud = Mesh(points)
+    cloud.I = stamps - stamps[0]
+    cloud.I = stamps.astype(np.float32)
+    assert not caplog.text
+    np.save(tmp_path / "stamps.npy", np.column_stack([points, stamps]))
+
+    def assign():
+        cloud.I = stamps
+
+    for make in (assign, lambda: easypbr.as_mesh(np.column_stack([points, stamps])), lambda: Mesh(tmp_path / "stamps.npy")):
+        caplog.clear()
+        make()
+        assert caplog.text.count("intensities are kept as float32") == 1 and "subtract an offset" in caplog.text

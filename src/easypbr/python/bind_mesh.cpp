@@ -161,10 +161,7 @@ const std::vector<MeshArray>& mesh_arrays() {
          "int32 labels, one per vertex, per face or per polygon (per vertex if the numbers are equal); those "
          "of polygons are kept as one per face.",
          view<int32_t, 1, &MeshData::L>, prepare_labels},
-        {"I", "n float32 intensities.", view<float, 1, &MeshData::I>,
-         [](nb::handle o) {
-             return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1});
-         }},
+        {"I", "n float32 intensities.", view<float, 1, &MeshData::I>, prepare_intensities},
         {"scales", "n x 3 float32 standard deviations of splats along their own axes.",
          view_splats<3, &SplatArrays::scales>,
          [](nb::handle o) {

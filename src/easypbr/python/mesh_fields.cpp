@@ -75,6 +75,17 @@ nb::object label_map_of(const Mesh& mesh) {
 
 }  // namespace
 
+MeshChange prepare_intensities(nb::handle object) {
+    Array1f intensities;
+    if (!object.is_none()) {
+        const ArrayShape shape{"I", 1, 1};
+        const nb::object numbers = numeric_object(object, "mesh array I");
+        intensities = to_array<float, 1>(numbers, shape);
+        warn_of_rounded_intensities("", rounding_of(numbers, shape));
+    }
+    return [intensities](MeshData& data) { data.I = intensities; };
+}
+
 MeshChange prepare_labels(nb::handle object) {
     Array1i labels;
     if (!object.is_none()) {

@@ -11,6 +11,8 @@ namespace easypbr::python {
 /// Something read from Python (with the GIL) that is put in place without it.
 using MeshChange = std::function<void(MeshData&)>;
 
+/// Warns where float32 takes what tells them apart.
+MeshChange prepare_intensities(nb::handle object);
 /// Throws ArgumentError for what is no labels; for logits it says argmax.
 MeshChange prepare_labels(nb::handle object);
 /// A dict of name to values, or None.

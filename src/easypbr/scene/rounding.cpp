@@ -14,6 +14,14 @@ namespace {
 /// Beyond it double precision itself has no longer every whole number.
 constexpr double most_exact_double = 9007199254740992.0;
 
+void warn_of_lost_values(const std::string& where, const std::string& what, const RoundingCounts& counts) {
+    if (counts.are_lost())
+        log_warning(
+            fmt::format("{}{}{} are kept as float32, which {}: subtract an offset from them first, or give "
+                        "IDs as labels",
+                        where, where.empty() ? "" : ": ", what, counts.text()));
+}
+
 }  // namespace
 
 void RoundingCounts::add(double value) {
@@ -64,11 +72,11 @@ RoundingCounts rounding_of(std::span<const double> values) {
 }
 
 void warn_of_rounding(const std::string& where, const std::string& name, const RoundingCounts& counts) {
-    if (counts.are_lost())
-        log_warning(
-            fmt::format("{}{}scalars '{}' are kept as float32, which {}: subtract an offset from them first, "
-                        "or give IDs as labels",
-                        where, where.empty() ? "" : ": ", name, counts.text()));
+    warn_of_lost_values(where, fmt::format("scalars '{}'", name), counts);
+}
+
+void warn_of_rounded_intensities(const std::string& where, const RoundingCounts& counts) {
+    warn_of_lost_values(where, "intensities", counts);
 }
 
 }  // namespace easypbr

@@ -1,4 +1,5 @@
-// What float32 keeps of scalars given in double precision: time stamps and IDs are too large for it.
+// What float32 keeps of scalars and intensities given in double precision: time stamps and IDs are too large
+// for it.
 #pragma once
 
 #include <array>
@@ -66,5 +67,7 @@ RoundingCounts rounding_of(std::span<const double> values);
 /// Logs one warning that names the scalars where float32 takes what tells them apart. `where`: what stands
 /// before it, the name of a file or nothing.
 void warn_of_rounding(const std::string& where, const std::string& name, const RoundingCounts& counts);
+/// The same of intensities.
+void warn_of_rounded_intensities(const std::string& where, const RoundingCounts& counts);
 
 }  // namespace easypbr

@@ -208,7 +208,11 @@ VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count)
         L_.resize(Eigen::Index(count));
         fields[label[0]].column->integers = L_.data();
     }
-    plan_floats(fields, find_spelling(fields, intensity_names), count, I_);
+    if (const auto intensity = find_spelling(fields, intensity_names); !intensity.empty()) {
+        plan_floats(fields, intensity, count, I_);
+        intensity_rounding_ = rounding_for(fields[intensity[0]].property);
+        fields[intensity[0]].column->rounding = intensity_rounding_.get();
+    }
     plan_scalars(fields, count);
 }
 
@@ -262,6 +266,7 @@ void VertexArrays::move_into(MeshData& mesh, const Source& source) {
     if (UV_.size()) mesh.UV = std::move(UV_);
     if (L_.size()) mesh.L = std::move(L_);
     if (I_.size()) mesh.I = std::move(I_);
+    if (intensity_rounding_) warn_of_rounded_intensities(source.path.string(), intensity_rounding_->counts());
     for (Scalar& scalar : scalars_) {
         warn_of_lost(source, scalar.name, scalar.rounding.get());
         clear_missing(scalar.property, scalar.values);

@@ -62,7 +62,7 @@ class VertexArrays {
 
     /// Fills the mesh, with attributes in the ranges that MeshData promises: colours of other types than
     /// uint8 and uint16 may be 0 .. 1, 0 .. 255 or 0 .. 65535. Leaves nothing here.
-    /// Warns where float32 takes what tells the values of scalars apart.
+    /// Warns where float32 takes what tells the values of scalars or intensities apart.
     void move_into(MeshData& mesh, const Source& source);
 
   private:
@@ -83,6 +83,7 @@ class VertexArrays {
     Array2f::Dense UV_;
     Array1i::Dense L_;
     Array1f::Dense I_, B_;
+    std::unique_ptr<Rounding> intensity_rounding_;  ///< as Scalar::rounding
     std::vector<Scalar> scalars_;
 };
 
