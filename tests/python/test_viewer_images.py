@@ -1,4 +1,6 @@
 """Images, cameras and animations in a viewer, without a display."""
+import threading
+
 import numpy as np
 import pytest
 
@@ -53,6 +55,30 @@ def test_an_image_is_replaced_in_every_iteration(view):
         view.show_image("loss", np.full((8, 8, 3), 5 * step, np.uint8))
     x0, y0, x1, y1 = view_places(view)["loss"]
     assert tuple(view.screenshot()[round((y0 + y1) / 2), round((x0 + x1) / 2), :3]) == (245, 245, 245)
+
+
+def test_a_frame_that_is_drawn_is_not_waited_for(view):
+    """While another thread draws, here in a panel of a frame, the newest image of a name waits for the next frame."""
+    entered, leave, in_time = threading.Event(), threading.Event(), []
+
+    @view.add_panel("Slow")
+    def slow(ui):
+        entered.set()
+        in_time.append(leave.wait(20))
+
+    drawing = threading.Thread(target=view.screenshot)
+    drawing.start()
+    assert entered.wait(60)
+    for step in range(3):
+        view.show_image("loss", np.full((8, 8, 3), 100 * step, np.uint8))
+    with pytest.raises(easypbr.ArgumentError, match="expected 1, 3 or 4 channels, got 2"):
+        view.show_image("pair", np.zeros((2, 2, 2)))
+    leave.set()
+    drawing.join()
+    assert all(in_time)
+    assert view.image_names() == ["loss"]
+    x0, y0, x1, y1 = view_places(view)["loss"]
+    assert tuple(view.screenshot()[round((y0 + y1) / 2), round((x0 + x1) / 2), :3]) == (200, 200, 200)
 
 
 def test_range_and_colormap(view):

@@ -84,7 +84,7 @@ bool look_rows(const Image& image, ImageLook& look) {
 
 }  // namespace
 
-void ImagePanels::show(const std::string& name, Image image, const ImageLook& look) {
+void check_panel_image(const std::string& name, const Image& image, const ImageLook& look) {
     if (name.empty()) throw ArgumentError("an image needs a name");
     if (image.empty()) throw ArgumentError(fmt::format("image '{}' is empty", name));
     if (std::max(image.width(), image.height()) > most_image_side)
@@ -95,6 +95,10 @@ void ImagePanels::show(const std::string& name, Image image, const ImageLook& lo
     const auto wrong = [](const std::optional<float>& value) { return value && !std::isfinite(*value); };
     if (wrong(look.min) || wrong(look.max) || (look.min && look.max && !(*look.min < *look.max)))
         throw ArgumentError(fmt::format("image '{}': expected a range from low to high", name));
+}
+
+void ImagePanels::show(const std::string& name, Image image, const ImageLook& look) {
+    check_panel_image(name, image, look);
     Panel& panel = panels_[name];
     // What a person chose stays until the program wants something else than before.
     const bool same =

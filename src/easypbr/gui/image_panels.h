@@ -15,12 +15,15 @@ namespace easypbr::gui {
 /// Pixels of a side of an image: what every driver has textures of.
 inline constexpr int most_image_side = 16384;
 
+/// Throws ArgumentError for an empty name or image, one of more than most_image_side pixels in a row or
+/// column, two channels, and an empty range.
+void check_panel_image(const std::string& name, const Image& image, const ImageLook& look);
+
 /// The windows.
 class ImagePanels {
   public:
     /// Shows an image of 1, 3 or 4 channels; one of the same name is replaced, in the same window, with the
-    /// range and the colours that a person chose there. Throws ArgumentError for an empty name or image, one
-    /// of more than 16384 pixels in a row or column, two channels, and an empty range.
+    /// range and the colours that a person chose there. Throws as check_panel_image().
     void show(const std::string& name, Image image, const ImageLook& look = {});
     /// Throws NameError when there is none.
     void remove(const std::string& name);

@@ -180,7 +180,7 @@ void show_image(SharedViewer& self, const std::string& name, const nb::object& a
     Image image = to_image(array, "show_image");
     gui::ImageLook look{min, max, {}};
     if (!colormap.is_none()) look.colormap = parse_colormap(colormap_text(colormap));
-    self.run([&](Viewer& viewer) { viewer.show_image(name, std::move(image), look); });
+    self.show_image(name, std::move(image), look);
 }
 
 /// Calls with the viewer's player.

@@ -18,6 +18,7 @@
 #include "easypbr/core/own_process.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/image_inbox.h"
 #include "easypbr/viewer/viewer.h"
 
 namespace easypbr::python {
@@ -53,6 +54,20 @@ class Turns {
         waiting().erase(self);
         owner_ = self;
         depth_ = 1;
+    }
+    /// Comes in if nobody is inside or waits.
+    bool try_lock() {
+        const std::lock_guard lock(mutex());
+        const std::thread::id self = std::this_thread::get_id();
+        if (owner_ == self) {
+            ++depth_;
+            return true;
+        }
+        if (next_ != served_) return false;
+        ++next_;
+        owner_ = self;
+        depth_ = 1;
+        return true;
     }
     void unlock() {
         {
@@ -104,6 +119,7 @@ class SharedViewer {
             require_same_process();
             const std::lock_guard lock(shared_->turns);
             Viewer& viewer = shared_->viewer;
+            shared_->images.deliver(viewer);
             if constexpr (std::is_void_v<decltype(work(viewer))>) {
                 work(viewer);
                 viewer.tell_servers();
@@ -112,6 +128,17 @@ class SharedViewer {
                 viewer.tell_servers();
                 return result;
             }
+        });
+    }
+
+    /// Shows an image beside the scene: at once, or, where another thread is inside, before the next turn.
+    /// Does not wait for one. Throws as Viewer::show_image().
+    void show_image(const std::string& name, Image image, const gui::ImageLook& look) {
+        released([&] {
+            require_same_process();
+            shared_->images.put(name, std::move(image), look);
+            const std::unique_lock lock(shared_->turns, std::try_to_lock);
+            if (lock) shared_->images.deliver(shared_->viewer);
         });
     }
 
@@ -132,6 +159,7 @@ class SharedViewer {
         Shared(const Scene& scene, DrawDevice device) : viewer(scene, device) {}
 
         Turns turns;
+        ImageInbox images;
         Viewer viewer;
     };
 
