@@ -26,7 +26,7 @@ struct ScanLayout {
     size_t point_size() const { return fields.size() * size_of(ScalarType::float32); }
 };
 
-ScanLayout layout_of(const fs::path& scan) {
+ScanLayout scan_layout_of(const fs::path& scan) {
     if (extension_of(scan.stem()) == "pcd") return {"nuScenes", {"x", "y", "z", "intensity", "ring"}};
     return {"KITTI", {"x", "y", "z", "intensity"}};
 }
@@ -76,7 +76,7 @@ void read_kitti_labels(const Source& source, MeshData& mesh) {
 
 MeshData read_kitti(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    const ScanLayout layout = layout_of(source.path);
+    const ScanLayout layout = scan_layout_of(source.path);
     if (source.bytes.size() % layout.point_size())
         fail(source,
              fmt::format("no {} scan: {} bytes are not a multiple of {} ({} as float32)", layout.format,
