@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <mutex>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/triangle.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/world_elements.h"
 
 namespace easypbr::detail {
 namespace {
@@ -17,42 +17,13 @@ constexpr double clear_part = 0.5;
 /// Elements that have a box in common.
 constexpr size_t elements_per_box = 4096;
 
-using Corners = std::array<Vec3d, 3>;
-
-/// Faces in world space; of what has none its vertices.
-class Elements {
-  public:
-    explicit Elements(const SceneSnapshot::Object& object)
-        : mesh_(*object.mesh), T_world_mesh_(object.T_world_mesh) {}
-
-    size_t count() const { return size_t(has_faces() ? mesh_.F.rows() : mesh_.V.rows()); }
-    Corners corners(size_t i) const {
-        const auto at = Eigen::Index(i);
-        if (!has_faces()) return {vertex(at), vertex(at), vertex(at)};
-        return {vertex(mesh_.F(at, 0)), vertex(mesh_.F(at, 1)), vertex(mesh_.F(at, 2))};
-    }
-
-  private:
-    bool has_faces() const { return !mesh_.F.empty(); }
-    Vec3d vertex(Eigen::Index i) const {
-        return T_world_mesh_ * Vec3d(mesh_.V.row(i).transpose().cast<double>());
-    }
-
-    const MeshData& mesh_;
-    const Eigen::Affine3d& T_world_mesh_;
-};
-
-bool are_finite(const Corners& corners) {
-    return std::ranges::all_of(corners, [](const Vec3d& corner) { return corner.allFinite(); });
-}
-
 /// Shortens the ways from places to elements `begin` to `end`, which reach farther than their corners say.
-void shorten(const Elements& elements, size_t begin, size_t end, double reach,
+void shorten(const WorldElements& elements, size_t begin, size_t end, double reach,
              const std::vector<Vec3d>& places, std::vector<double>& ways) {
-    std::vector<Corners> all;
+    std::vector<WorldElements::Corners> all;
     Box3d box;
     for (size_t i = begin; i < end; ++i) {
-        const Corners corners = elements.corners(i);
+        const WorldElements::Corners corners = elements.corners(i);
         if (!are_finite(corners)) continue;
         for (const Vec3d& corner : corners) box.extend(corner);
         all.push_back(corners);
@@ -73,7 +44,7 @@ std::vector<double> clear_ways(const SceneSnapshot& scene, const std::vector<Vec
     std::vector<double> ways(places.size(), farthest);
     std::mutex mutex;
     for (const SceneSnapshot::Object& object : scene.objects) {
-        const Elements elements(object);
+        const WorldElements elements(object);
         const double reach = object.point_radius + object.half_voxel * object.T_world_mesh.linear().norm();
         parallel_chunks(elements.count(), elements_per_box, [&](size_t begin, size_t end) {
             std::vector<double> own(places.size(), farthest);
