@@ -60,8 +60,10 @@ void validate(const Light& light, const std::string& name);
 /// camera.
 template <template <class> class MaybeAuto>
 struct BasicStudioLight {
-    MaybeAuto<bool> enabled{};     ///< automatic: the key, where no environment map is given
-    MaybeAuto<Vec3d> position{};   ///< world units; automatic: 3 content radii away, by the first camera
+    MaybeAuto<bool> enabled{};  ///< automatic: the key, where no environment map is given
+    /// World units; automatic: 3 content radii away, by the first camera. The key of closed content: beside
+    /// it.
+    MaybeAuto<Vec3d> position{};
     Vec3 color{1, 1, 1};           ///< sRGB-encoded
     MaybeAuto<float> intensity{};  ///< candela; automatic: the same irradiance at the content at any scale
     bool casts_shadows = true;

@@ -58,6 +58,10 @@ std::vector<double> clear_ways(const SceneSnapshot& scene, const std::vector<Vec
 
 }  // namespace
 
+double clear_way(const Content& content, const Vec3d& place, double farthest) {
+    return clear_ways(content.scene(), {place}, farthest).front();
+}
+
 std::vector<float> plain_light_radii(const Content& content, const std::vector<Light>& lights) {
     if (lights.empty()) return {};
     const double most = plain_light_part * content.radius(), farthest = most / clear_part;

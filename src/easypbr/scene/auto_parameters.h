@@ -18,6 +18,7 @@ class Content {
     Content& operator=(const Content&) = delete;
 
     const SceneSnapshot& scene() const { return styled_ ? *styled_ : scene_; }
+    const Style& overrides() const { return overrides_; }
     bool empty() const;
     /// Centre of the bounding box; the origin when empty.
     Vec3d centre() const;
@@ -32,6 +33,7 @@ class Content {
 
   private:
     const SceneSnapshot& scene_;
+    const Style overrides_;
     std::optional<SceneSnapshot> styled_;  ///< where the overrides change how far objects reach
     mutable std::optional<Box3d> bounds_;
 };
@@ -105,13 +107,31 @@ double ground_below(const Box3d& content, const Vec3d& up);
 /// and spots are near a surface, which the emitter must not reach through.
 std::vector<float> plain_light_radii(const Content& content, const std::vector<Light>& lights);
 
-/// Key, fill and rim as far as they are on: automatic ones are off but for the key, by `key_by_default`.
-std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,
-                                                 bool key_by_default, LightsSettings& settings,
-                                                 const Vec3d& up);
+/// How far the nearest surface is from a place: `farthest` where there is none within it.
+double clear_way(const Content& content, const Vec3d& place, double farthest);
+
+/// Content that closes around the camera: no light from outside reaches what it sees.
+struct Enclosure {
+    double distance;  ///< of what the camera sees
+    Vec3d viewed;     ///< the place in front of the camera at that distance
+    double clear;     ///< how far the nearest surface is from the camera: `distance` at most
+};
+std::optional<Enclosure> enclosure_of(const Content& content, const Camera& camera);
+
+/// What lights are placed and metered by.
+struct Stage {
+    const Content& content;
+    const Camera& camera;
+    std::optional<Enclosure> enclosure = {};
+};
+
+/// Key, fill and rim as far as they are on: automatic ones are off but for the key, by `key_by_default`. In
+/// closed content the key is a lamp beside the camera.
+std::vector<ResolvedLight> resolve_studio_lights(const Stage& stage, bool key_by_default,
+                                                 LightsSettings& settings, const Vec3d& up);
 
 /// Exposure by incident light at the content's centre, whatever the content looks like (as a hand-held meter
-/// does).
-float metered_exposure(const Content& content, const ResolvedSettings& resolved, float environment_intensity);
+/// does); in closed content at what the camera sees, without the environment, with what walls send back.
+float metered_exposure(const Stage& stage, const ResolvedSettings& resolved, float environment_intensity);
 
 }  // namespace easypbr::detail

@@ -129,7 +129,8 @@ void add_surroundings(Table& table) {
 }
 
 template <class Access>
-void add_studio_light(Table& table, const std::string& name, const std::string& automatic, Access light) {
+void add_studio_light(Table& table, const std::string& name, const std::string& automatic,
+                      const std::string& also, Access light) {
     const auto field = [light](auto member) {
         return [=](auto& settings) -> auto& {
             return member(light(settings));
@@ -138,10 +139,10 @@ void add_studio_light(Table& table, const std::string& name, const std::string& 
     const std::string prefix = "lights." + name + ".", the = "the " + name + " light";
     table.push_back(make(prefix + "enabled", field(EASYPBR_AT(enabled)),
                          "Enables " + the + "; automatic: " + automatic + "."));
-    table.push_back(
-        make(prefix + "position", field(EASYPBR_AT(position)),
-             "Position of " + the + " in world space; automatic: placed relative to the first camera.",
-             "world units"));
+    table.push_back(make(
+        prefix + "position", field(EASYPBR_AT(position)),
+        "Position of " + the + " in world space; automatic: placed relative to the first camera" + also + ".",
+        "world units"));
     table.push_back(color(prefix + "color", field(EASYPBR_AT(color)), "Colour of " + the + "."));
     table.push_back(make(
         prefix + "intensity", field(EASYPBR_AT(intensity)),
@@ -159,9 +160,10 @@ void add_studio_light(Table& table, const std::string& name, const std::string& 
 void add_lights(Table& table) {
     table.push_back(make("lights.intensity", EASYPBR_AT(lights.intensity),
                          "Scale factor of the intensity of the key, fill and rim lights.", "", {0, 1e6}));
-    add_studio_light(table, "key", "on if no environment map is given", EASYPBR_AT(lights.key));
-    add_studio_light(table, "fill", "off", EASYPBR_AT(lights.fill));
-    add_studio_light(table, "rim", "off", EASYPBR_AT(lights.rim));
+    add_studio_light(table, "key", "on if no environment map is given", ", beside it within closed content",
+                     EASYPBR_AT(lights.key));
+    add_studio_light(table, "fill", "off", "", EASYPBR_AT(lights.fill));
+    add_studio_light(table, "rim", "off", "", EASYPBR_AT(lights.rim));
 }
 
 void add_shadows(Table& table) {

@@ -92,7 +92,7 @@ Vec2d balanced_centre(const Content& content, const Mat3d& R_world_cam, const Sl
 
 }  // namespace
 
-Content::Content(const SceneSnapshot& scene, const Style& overrides) : scene_(scene) {
+Content::Content(const SceneSnapshot& scene, const Style& overrides) : scene_(scene), overrides_(overrides) {
     if (!changes_reach(overrides)) return;
     styled_ = scene;
     for (SceneSnapshot::Object& object : styled_->objects) set_reach(object, overrides);

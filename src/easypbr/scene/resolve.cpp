@@ -80,7 +80,25 @@ std::map<std::string, float> inferred_radii(const detail::Content& content) {
     return inferred;
 }
 
-void resolve_lights(const detail::Content& content, Settings& settings, ResolvedSettings& resolved) {
+bool uses_given_environment(const SceneSnapshot& scene, const EnvironmentSettings& environment) {
+    return *environment.enabled && is_environment_given(scene, environment);
+}
+
+/// Closed content matters where a light or the exposure is still to be inferred, and the user has not said
+/// what lights the content.
+std::optional<detail::Enclosure> inferred_enclosure(const detail::Content& content, const Settings& settings,
+                                                    const Camera& camera) {
+    const StudioLight& key = settings.lights.key;
+    const bool is_known = key.position.value() && key.intensity.value() && key.radius.value() &&
+                          settings.tonemap.exposure.value();
+    const bool has_lights =
+        std::ranges::any_of(content.scene().lights, [](const auto& light) { return light.second.enabled; });
+    if (is_known || has_lights || uses_given_environment(content.scene(), settings.environment)) return {};
+    return detail::enclosure_of(content, camera);
+}
+
+void resolve_lights(const detail::Stage& stage, Settings& settings, ResolvedSettings& resolved) {
+    const detail::Content& content = stage.content;
     for (const auto& [name, light] : content.scene().lights) validate(light, name);
     resolved.light_radii = inferred_radii(content);
     for (const auto& [name, light] : content.scene().lights) {
@@ -89,18 +107,17 @@ void resolve_lights(const detail::Content& content, Settings& settings, Resolved
         resolved.lights.push_back(
             {light, inferred != resolved.light_radii.end() ? inferred->second : light.radius.value_or(0)});
     }
-    const EnvironmentSettings& environment = settings.environment;
-    const bool given = *environment.enabled && is_environment_given(content.scene(), environment);
-    for (const ResolvedLight& light : detail::resolve_studio_lights(
-             content, resolved.camera, !given, settings.lights, up_direction(settings.camera)))
+    const bool given = uses_given_environment(content.scene(), settings.environment);
+    for (const ResolvedLight& light :
+         detail::resolve_studio_lights(stage, !given, settings.lights, up_direction(settings.camera)))
         resolved.lights.push_back(light);
 }
 
-void resolve_exposure(const detail::Content& content, Settings& settings, ResolvedSettings& resolved) {
+void resolve_exposure(const detail::Stage& stage, Settings& settings, ResolvedSettings& resolved) {
     TonemapSettings& tone = settings.tonemap;
     if (!tone.exposure.value())
         detail::fill(tone.exposure,
-                     detail::metered_exposure(content, resolved, *settings.environment.intensity));
+                     detail::metered_exposure(stage, resolved, *settings.environment.intensity));
     resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
 }
 
@@ -184,9 +201,11 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     }
     resolved.camera = detail::resolve_camera(content, settings.camera, {double(size.x()) / size.y(), insets});
     resolve_environment(scene, settings, resolved);
-    resolve_lights(content, settings, resolved);
+    const detail::Stage stage{content, resolved.camera,
+                              inferred_enclosure(content, settings, resolved.camera)};
+    resolve_lights(stage, settings, resolved);
     resolve_sun(scene, settings.environment, resolved);
-    resolve_exposure(content, settings, resolved);
+    resolve_exposure(stage, settings, resolved);
     detail::fill(settings.annotation.legend, false);
     detail::fill(settings.annotation.colorbar, false);
     detail::fill(settings.load.crease_deg, automatic_crease_deg);

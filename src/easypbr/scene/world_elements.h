@@ -1,9 +1,10 @@
-// Faces and vertices of an object of a scene, in world space.
+// Faces and vertices of an object of a scene, in world space; which faces have a material.
 #pragma once
 
 #include <algorithm>
 #include <array>
 
+#include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr::detail {
@@ -35,6 +36,20 @@ class WorldElements {
 
 inline bool are_finite(const WorldElements::Corners& corners) {
     return std::ranges::all_of(corners, [](const Vec3d& corner) { return corner.allFinite(); });
+}
+
+/// Calls body(material, begin, end) for ranges of faces that have a material in common, where an object is
+/// drawn as faces.
+template <class Body>
+void for_each_material(const MeshData& mesh, const Style& overrides, const Body& body) {
+    static const Material plain;
+    if (mesh.F.empty() || resolve_style(mesh, overrides).mode != DrawMode::mesh) return;
+    const auto material = [&](int i) -> const Material& {
+        return mesh.materials.empty() ? plain : mesh.materials[size_t(i)];
+    };
+    if (mesh.parts.empty()) body(material(0), 0, size_t(mesh.F.rows()));
+    for (const MeshPart& part : mesh.parts)
+        body(material(part.material), size_t(part.first_face), size_t(part.first_face + part.face_count));
 }
 
 }  // namespace easypbr::detail
