@@ -33,3 +33,22 @@ def test_the_lamp_at_the_camera_is_shown_and_kept():
     view.settings.camera.position = (1, 0, 0)
     view.render(size=SIZE, samples=1)
     np.testing.assert_array_equal(view.settings.lights.key.position.value, lamp)
+
+
+def test_a_room_that_no_light_is_in_is_a_warning(caplog):
+    scene = Scene()
+    scene.show(Mesh(*room((6, 3, 6))), "room")
+    view = Viewer(scene=scene)
+    view.settings.camera.position = (0, 0, 2.5)
+    view.settings.camera.target = (0, 0, 0)
+    view.settings.lights.key.position = (0, 9, 0)
+    view.render(size=SIZE, samples=1)
+    assert "no light is within" not in caplog.text, "single frames have the environment's light"
+    view.settings.path.enabled = True
+    view.render(size=SIZE, samples=2)
+    view.render(size=SIZE, samples=2)
+    assert caplog.text.count("no light is within") == 1
+    caplog.clear()
+    view.settings.lights.key.position = (0, 1, 0)
+    view.render(size=SIZE, samples=2)
+    assert not caplog.text

@@ -9,6 +9,7 @@
 
 #include "easypbr/app/font.h"
 #include "easypbr/core/log.h"
+#include "easypbr/scene/auto_parameters.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
 
@@ -52,6 +53,32 @@ std::string shaders_text(const SceneSnapshot& scene, const Settings& settings) {
     if (name.empty()) return {};
     return fmt::format("material.shader: '{}' is not drawn as faces, which alone have shaders of their own",
                        name);
+}
+
+/// Whether an object is seen without light.
+bool shines(const Object& object, const Style& overrides) {
+    const auto is_bright = [](const Material& material) {
+        return material.unlit || !material.emissive.isZero();
+    };
+    return !resolve_style(*object.mesh, overrides).lit.value_or(true) ||
+           std::ranges::any_of(object.mesh->materials, is_bright);
+}
+
+std::string light_text(const SceneSnapshot& scene, const Settings& settings,
+                       const ResolvedSettings& resolved) {
+    if (!resolved.traces_paths) return {};
+    const detail::Content content(scene, settings.style);
+    const Box3d& box = content.bounds();
+    const auto is_within = [&](const ResolvedLight& light) {
+        return light.type != LightType::directional && box.contains(light.position);
+    };
+    if (box.isEmpty() || !box.contains(resolved.camera.position())) return {};
+    const auto is_seen = [&](const Object& object) { return shines(object, settings.style); };
+    if (std::ranges::any_of(resolved.lights, is_within) || std::ranges::any_of(scene.objects, is_seen))
+        return {};
+    if (!detail::enclosure_of(content, resolved.camera)) return {};
+    return "lights: content closes around the camera and no light is within, so the picture is dark; add a "
+           "light, or set lights.key.position, .intensity, .radius and tonemap.exposure to follow";
 }
 
 std::string legend_text(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings) {
@@ -106,6 +133,11 @@ void SceneWarnings::check(const SceneSnapshot& scene, const Settings& settings,
     lens_.tell(lens_text(settings, resolved));
     normals_.tell(surfels_text(scene, settings));
     shaders_.tell(shaders_text(scene, settings));
+}
+
+void SceneWarnings::check_light(const SceneSnapshot& scene, const Settings& settings,
+                                const ResolvedSettings& resolved) {
+    light_.tell(light_text(scene, settings, resolved));
 }
 
 void SceneWarnings::check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,

@@ -19,6 +19,9 @@ class SceneWarnings {
     /// any, which is drawn as points; a material with a shader that has no faces to act on; paths that are
     /// asked for where a material has extensions of glTF.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
+    /// The same, of a picture that is begun: paths in closed content that no light is within. Takes time
+    /// where the camera is within the content.
+    void check_light(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
     /// The same: a legend or a colour bar that there is nothing for, or that a picture of this size has no
     /// room for; characters that the font lacks.
     void check(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings, Vec2i size);
@@ -29,7 +32,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, normals_, shaders_, legend_, colorbar_, font_, room_;
+    Once lens_, normals_, shaders_, light_, legend_, colorbar_, font_, room_;
 };
 
 }  // namespace easypbr::app

@@ -208,6 +208,7 @@ Drawn Session::draw_once(const PictureOptions& options) {
     const std::shared_ptr<const Motion> before = motion_.before(prepared.scene, prepared.resolved.camera);
     if (settings_->motion_blur.enabled) prepared.options.motion = before;
     refined_.reset();
+    warnings_.check_light(prepared.scene, *settings_, prepared.resolved);
     Drawn drawn = begin(prepared, true, false);
     const gl::ContextScope scope(*device_->context);
     const Stopwatch watch(timing_.draw);
@@ -258,6 +259,7 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
     const Stopwatch watch(timing_.draw);
     if (done.began) {
         refined_.reset();
+        warnings_.check_light(prepared.scene, *settings_, prepared.resolved);
         const Vec2i asked = prepared.options.size;
         Drawn drawn = begin(prepared, true, false);
         renderer.begin(prepared.scene, prepared.resolved, prepared.options, prepared.images);
