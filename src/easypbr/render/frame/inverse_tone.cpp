@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "easypbr/core/color.h"
 #include "easypbr/core/luminance.h"
 
 namespace easypbr::render {
@@ -126,6 +127,12 @@ Vec3 inverse_tone_map(const Vec3& display, const DisplayTone& tone) {
     // Dimmed as a whole, so that hues stay.
     const float most = radiance.maxCoeff();
     return radiance * (std::min(1.0f, brightest / std::max(most, 1e-6f)) / tone.exposure);
+}
+
+std::optional<Vec3> background_radiance(const ResolvedSettings& resolved) {
+    const BackgroundSettings& background = resolved.settings.background;
+    if (background.mode != BackgroundMode::color) return std::nullopt;
+    return inverse_tone_map(linear_from_srgb(background.color), display_tone(resolved));
 }
 
 }  // namespace easypbr::render

@@ -1,6 +1,7 @@
 // The tone curves of shaders/common_tone.glsl, and their inverse.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "easypbr/scene/resolve.h"
@@ -19,5 +20,9 @@ std::string_view tone_feature(ToneOperator tone_operator);
 /// only much brighter light would show, near white, stands for radiance that is 4 times white after
 /// exposure: the curves take it all but to white, and it lights surfaces no more than a lamp would.
 Vec3 inverse_tone_map(const Vec3& display, const DisplayTone& tone);
+
+/// The radiance that stands for a background of one colour where light is traced to it; none where the
+/// background is something else.
+std::optional<Vec3> background_radiance(const ResolvedSettings& resolved);
 
 }  // namespace easypbr::render

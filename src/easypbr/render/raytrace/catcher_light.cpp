@@ -1,5 +1,6 @@
 #include "easypbr/render/raytrace/catcher_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -127,9 +128,9 @@ void CatcherLight::add_matt(const PathBatch& batch, size_t path, const SkySample
                           [&](const Vec3& light, float distance) { add(luminance(light), distance); });
 }
 
-void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& light) const {
+void CatcherLight::add_lamps(const PathBatch& batch, uint32_t depth, std::vector<CaughtLight>& light) const {
     std::vector<ChosenLight> lamps;
-    lights_->choose(batch, 0, true, lamps);
+    lights_->choose(batch, depth, true, lamps);
     std::vector<RaySegment> rays;
     std::vector<uint32_t> lights, paths;
     for (size_t i = 0; i < batch.count; ++i) {
@@ -151,19 +152,39 @@ void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& l
         light[batch.state[paths[i]].index].arrives += lamps[paths[i]].all * luminance(left[i]);
 }
 
-void CatcherLight::add_samples(PathBatch& batch, const std::vector<float>& distances,
+void CatcherLight::add_samples(PathBatch& batch, const std::vector<float>& distances, uint32_t depth,
                                std::vector<CaughtLight>& light) const {
     if (batch.count == 0) return;
     batch.find_starts();
-    if (!lights_->empty()) add_lamps(batch, light);
+    if (!lights_->empty()) add_lamps(batch, depth, light);
     // Area lights count on directions that are distributed by the cosine.
-    if (!sky_->empty() || lights_->has_areas()) add_skies(batch, distances, light);
+    if (!sky_->empty() || lights_->has_areas()) add_skies(batch, distances, depth, light);
 }
 
-void CatcherLight::add_skies(const PathBatch& batch, const std::vector<float>& distances,
+std::vector<float> CatcherLight::sampled_parts(std::span<const GroundHit> hits, uint32_t depth) const {
+    PathBatch batch(hits.size());
+    const Vec3 up = scene_->ground()->up.cast<float>();
+    for (size_t i = 0; i < hits.size(); ++i) {
+        batch.position.set(i, hits[i].position);
+        for (PathVectors<3>* direction : {&batch.normal, &batch.face, &batch.view}) direction->set(i, up);
+        PathState state = hits[i].state;
+        state.index = uint32_t(i);
+        batch.set_state(i, state);
+    }
+    batch.count = hits.size();
+    std::vector<CaughtLight> light(hits.size());
+    add_samples(batch, distances(batch.position), depth, light);
+    std::vector<float> parts;
+    parts.reserve(light.size());
+    for (const CaughtLight& caught : light)
+        parts.push_back(caught.all > 0 ? std::max(caught.arrives / caught.all, 0.0f) : 1.0f);
+    return parts;
+}
+
+void CatcherLight::add_skies(const PathBatch& batch, const std::vector<float>& distances, uint32_t depth,
                              std::vector<CaughtLight>& light) const {
-    const std::vector<SkyPoint> points = sky_points(batch, distances);
-    const PathVectors<2> lobe = batch.points(0, lobe_point);
+    const std::vector<SkyPoint> points = sky_points(batch, distances, depth);
+    const PathVectors<2> lobe = batch.points(depth, lobe_point);
     const RayScene::Ball& ball = scene_->ball();
     Looks looks(points.size());
     // Directions whose sky is read together: within cones, and distributed by the cosine.
@@ -207,10 +228,11 @@ void CatcherLight::add_skies(const PathBatch& batch, const std::vector<float>& d
 }
 
 std::vector<CatcherLight::SkyPoint> CatcherLight::sky_points(const PathBatch& batch,
-                                                             const std::vector<float>& distances) const {
+                                                             const std::vector<float>& distances,
+                                                             uint32_t depth) const {
     std::vector<SkyPoint> points(batch.count);
     std::vector<Vec2> chosen;
-    const PathVectors<2> numbers = batch.points(0, sky_point);
+    const PathVectors<2> numbers = batch.points(depth, sky_point);
     for (size_t i = 0; i < batch.count; ++i) {
         SkyPoint& point = points[i];
         point.path = i;

@@ -1,6 +1,7 @@
 // The light of surfaces that catch shadows.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "easypbr/render/raytrace/path_batch.h"
@@ -15,6 +16,12 @@ struct CaughtLight {
     float arrives = 0, all = 0;
 };
 
+/// A path that meets a ground that catches shadows.
+struct GroundHit {
+    PathState state;
+    Vec3 position;  ///< RayScene's frame
+};
+
 /// Estimates how much of the irradiance that lamps and the sky send a ground without casters arrives. Where
 /// all casters are seen within a cone, the sky's light without them is known, and what they hide is sampled
 /// within the cone; elsewhere directions are distributed by the cosine. Bright parts of the sky are found by
@@ -26,16 +33,20 @@ class CatcherLight {
 
     /// Of places (RayScene's frame) from the middle of the ball that holds the casters, in its radii.
     std::vector<float> distances(const PathVectors<3>& places) const;
-    /// One sample for each path of a batch, added by the paths' places, whose distances() these are.
-    void add_samples(PathBatch& batch, const std::vector<float>& distances,
+    /// One sample for each path of a batch, added by the paths' places, whose distances() these are. `depth`:
+    /// of the random numbers.
+    void add_samples(PathBatch& batch, const std::vector<float>& distances, uint32_t depth,
                      std::vector<CaughtLight>& light) const;
+    /// The part of the light that arrives where paths meet the ground, by one sample of each.
+    std::vector<float> sampled_parts(std::span<const GroundHit> hits, uint32_t depth) const;
 
   private:
     struct Cone;
     struct SkyPoint;
-    void add_lamps(const PathBatch& batch, std::vector<CaughtLight>& light) const;
-    std::vector<SkyPoint> sky_points(const PathBatch& batch, const std::vector<float>& distances) const;
-    void add_skies(const PathBatch& batch, const std::vector<float>& distances,
+    void add_lamps(const PathBatch& batch, uint32_t depth, std::vector<CaughtLight>& light) const;
+    std::vector<SkyPoint> sky_points(const PathBatch& batch, const std::vector<float>& distances,
+                                     uint32_t depth) const;
+    void add_skies(const PathBatch& batch, const std::vector<float>& distances, uint32_t depth,
                    std::vector<CaughtLight>& light) const;
     struct Looks;
     /// What a direction to the casters would bring, of a place outside of their ball.

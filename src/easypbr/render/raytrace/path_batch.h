@@ -52,6 +52,7 @@ struct PathState {
     /// forgotten.
     std::array<int, 4> volumes{-1, -1, -1, -1};
     Scattering scattered = Scattering::none;
+    bool reflected = false;         ///< by any surface: not transmitted alone
     int8_t channel = all_channels;  ///< the only one that is left once a volume has dispersed the light
 };
 
@@ -153,6 +154,20 @@ struct PathBatch {
         state[path] = to;
         seeds[path] = to.sampler.seed();
         reversed_samples[path] = to.sampler.reversed_sample();
+    }
+    /// Whether a path goes through its surface in a direction.
+    bool passes(size_t path, const Vec3& direction) const {
+        return extensions && direction.dot(face.at(path)) < 0;
+    }
+    /// Whether a path's surface transmits it in a direction. Total internal reflection is a part of the way
+    /// through a volume.
+    bool transmits(size_t path, const Vec3& direction) const {
+        if (passes(path, direction)) return true;
+        if (!extensions || inside[path] < 0.5f) return false;
+        const Vec3 towards = view.at(path);
+        const float cosine = (towards + direction).normalized().dot(towards),
+                    index = extensions->volume.at(path).y();
+        return index * index * (1 - cosine * cosine) >= 1;
     }
     /// PathSampler::pair() of all paths.
     PathVectors<2> points(uint32_t depth, uint32_t pair) const {

@@ -338,7 +338,7 @@ std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, Block& caught,
             catcher_period(distances[i]);
     places.face = places.normal;
     caught.start(pixels, places, batch);
-    tracer_.catcher().add_samples(batch, distances, light);
+    tracer_.catcher().add_samples(batch, distances, 0, light);
     return light;
 }
 

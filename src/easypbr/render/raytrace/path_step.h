@@ -77,6 +77,8 @@ struct PathTracer::Escaped {
 struct PathTracer::Caught {
     std::vector<RaySegment> upwards;  ///< that look whether the sky is seen from there
     Escaped paths;
+    std::vector<GroundHit> before_color;  ///< that see the background's colour there
+    std::vector<Scattering> scattered;    ///< how they have been before
 };
 
 }  // namespace easypbr::render

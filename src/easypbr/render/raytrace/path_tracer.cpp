@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "easypbr/core/luminance.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
 #include "easypbr/render/raytrace/path_step.h"
@@ -92,6 +93,7 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
     sky_.prepare(resolved.environment, resolved.R_env_world, resolved.settings.environment.intensity);
     emitters_.prepare(scene);
     catcher_.prepare(scene, lights_, sky_);
+    background_ = background_radiance(resolved);
     most_light_ = most;
     const float of_emitters = emitters_.brightness(), of_sky = sky_.brightness();
     emitter_part_ =
@@ -136,7 +138,17 @@ void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const
     }
 }
 
-void PathTracer::add_caught(const Caught& caught, PathRadiance& radiance) const {
+void PathTracer::add_caught(const Caught& caught, uint32_t depth, PathRadiance& radiance) const {
+    if (!caught.before_color.empty()) {
+        // The paths end here: nothing else takes the random numbers of the next surface.
+        const std::vector<float> parts = catcher_.sampled_parts(caught.before_color, depth + 1);
+        const float strength = resolved_->settings.ground.shadow_strength;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            const PathState& state = caught.before_color[i].state;
+            const Vec3 seen = *background_ * (1 - strength * (1 - parts[i]));
+            add(state.index, state.throughput.cwiseProduct(seen), caught.scattered[i], radiance);
+        }
+    }
     const std::vector<uint8_t> blocked = scene_->blocked(caught.upwards, Neighbours::scattered);
     Escaped open;
     for (size_t i = 0; i < blocked.size(); ++i)
@@ -234,6 +246,9 @@ void PathTracer::add_chosen(const PathBatch& batch, const Scattered& scattered,
         if (!(chosen.maxCoeff() > 0)) continue;
         const Vec3 direction = scattered.chosen_direction.at(i);
         const float distance = scattered.distance[i];
+        // Where a background of one colour is seen through surfaces there is no sky.
+        const bool seen_through = !batch.state[i].reflected && batch.passes(i, direction);
+        if (background_ && seen_through && std::isinf(distance)) continue;
         if (distance <= 0 ||
             !scene_->blocked(start_towards(batch, i, direction), direction, distance, Transmissive::met))
             light[i] += chosen;
@@ -291,8 +306,8 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
                          PathState& state) const {
     const float most = state.throughput.maxCoeff();
     if (!(most > 0)) return false;
-    const bool inside = batch.extensions && batch.inside[path] > 0.5f,
-               passes = batch.extensions && direction.dot(batch.face.at(path)) < 0;
+    const bool inside = batch.extensions && batch.inside[path] > 0.5f, passes = batch.passes(path, direction);
+    state.reflected |= !batch.transmits(path, direction);
     if (passes) pass(*scene_, batch, path, state);
     const bool is_sure =
         inside || passes ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
@@ -300,6 +315,40 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
     const float chance = std::min(most, 0.95f);
     state.throughput /= chance;
     return state.sampler.pair(depth, roulette).x() < chance;
+}
+
+Vec3 PathTracer::part_before_color(const PathBatch& batch, size_t path, const Scattered& scattered,
+                                   const PathState& state) const {
+    if (!background_) return Vec3::Zero();
+    if (!state.reflected) return Vec3::Ones();
+    if (batch.state[path].scattered == Scattering::wide) return Vec3::Zero();
+    // The diffuse lobe has no more than this of the weight: what specular lobes take of it is not known here.
+    const float metallic = batch.parameters.at(path).x(),
+                transmission = batch.extensions ? batch.extensions->volume.at(path).x() : 0.0f,
+                cosine = std::max(batch.normal.at(path).dot(scattered.direction.at(path)), 0.0f);
+    const Vec3 diffuse = batch.albedo.at(path) * ((1 - metallic) * (1 - transmission) * cosine /
+                                                  (float(pi) * scattered.density[path]));
+    const Vec3 weight = scattered.weight.at(path);
+    return (1 - diffuse.array() / weight.array().max(1e-20f)).max(0.0f);
+}
+
+void PathTracer::note_caught(const PathBatch& batch, size_t path, uint32_t depth, const Scattered& scattered,
+                             const Hit& hit, Caught& to) const {
+    const Scattering before = batch.state[path].scattered;
+    const Vec3 part = part_before_color(batch, path, scattered, hit.state);
+    if (part.maxCoeff() > 0) {
+        to.before_color.push_back({hit.state, hit.hit.position});
+        Vec3& throughput = to.before_color.back().state.throughput;
+        throughput = throughput.cwiseProduct(part);
+        to.scattered.push_back(before);
+    }
+    const Vec3 left = hit.state.throughput.cwiseProduct(Vec3::Ones() - part);
+    if (!(left.maxCoeff() > 0)) return;
+    const Vec2 u = hit.state.sampler.pair(depth, emitter_point);
+    to.upwards.push_back({RayScene::off_surface(hit.hit.position, hit.hit.normal),
+                          cosine_direction(RayFrame(hit.hit.normal), u),
+                          std::numeric_limits<float>::infinity()});
+    to.paths.add(hit.direction, hit.density, {left, hit.state.index, before});
 }
 
 void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
@@ -322,24 +371,24 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
                                  if (hit && hit->distance < distance) return;
                                  add(state.index, state.throughput.cwiseProduct(light), before, radiance);
                              });
+        if (!hit && background_ && !state.reflected) {
+            add(state.index, state.throughput.cwiseProduct(*background_), before, radiance);
+            continue;
+        }
         if (!hit) {
             escaped.add(direction, scattered.density[i], {state.throughput, state.index, before});
             continue;
         }
         absorb(hit->distance, state);
-        if (hit->surface < 0 && catches) {
-            const Vec2 u = state.sampler.pair(depth, emitter_point);
-            caught.upwards.push_back({RayScene::off_surface(hit->position, hit->normal),
-                                      cosine_direction(RayFrame(hit->normal), u),
-                                      std::numeric_limits<float>::infinity()});
-            caught.paths.add(direction, scattered.density[i], {state.throughput, state.index, before});
-            continue;
-        }
-        hits.push_back({state, *hit, direction, scattered.density[i],
-                        hit->distance * float(scene_->unit()) * ray_widening});
+        const Hit met{state, *hit, direction, scattered.density[i],
+                      hit->distance * float(scene_->unit()) * ray_widening};
+        if (hit->surface < 0 && catches)
+            note_caught(batch, i, depth, scattered, met, caught);
+        else
+            hits.push_back(met);
     }
     add_escaped(escaped, radiance);
-    add_caught(caught, radiance);
+    add_caught(caught, depth, radiance);
 }
 
 namespace {

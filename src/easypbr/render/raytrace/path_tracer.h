@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -87,8 +88,15 @@ class PathTracer {
     std::vector<float> emission_weights(std::span<const Hit> hits) const;
     /// Adds what the sky sends to paths that have left the scene in sampled directions.
     void add_escaped(const Escaped& paths, PathRadiance& radiance) const;
-    /// Adds what a ground that catches shadows shows of the sky behind it.
-    void add_caught(const Caught& caught, PathRadiance& radiance) const;
+    /// Notes a path that has met a ground that catches shadows, from surface `path` of a batch.
+    void note_caught(const PathBatch& batch, size_t path, uint32_t depth, const Scattered& scattered,
+                     const Hit& hit, Caught& to) const;
+    /// Adds what such a ground shows of the sky behind it, or of the background's colour.
+    void add_caught(const Caught& caught, uint32_t depth, PathRadiance& radiance) const;
+    /// The part of a path, as it goes on from a surface of a batch, that sees a background of one colour on
+    /// the ground: light that is transmitted alone, and what specular lobes reflect.
+    Vec3 part_before_color(const PathBatch& batch, size_t path, const Scattered& scattered,
+                           const PathState& state) const;
     /// Adds what a path has found at a surface.
     void add(uint32_t index, const Vec3& found, Scattering scattered, PathRadiance& to) const;
 
@@ -98,6 +106,7 @@ class PathTracer {
     SkySampler sky_;
     Emitters emitters_;
     CatcherLight catcher_;
+    std::optional<Vec3> background_;  ///< radiance, where it is a colour
     float emitter_part_ = 0;  ///< of the directions of next-event estimation; the others are those of the sky
     float most_light_ = 0;    ///< that a path adds after a bounce, luminance
     std::shared_ptr<const void> uniforms_, extended_;
