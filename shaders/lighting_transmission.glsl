@@ -1,8 +1,12 @@
 // The environment's and the scene's light that goes through a surface: KHR_materials_transmission and _volume. The lit
 // picture of all that lies behind is looked up where the refracted ray meets it, blurred by the roughness; where the picture
-// ends or is empty the environment is seen. Thin surfaces do not bend the ray. Volumes bend it where it enters, and where it leaves through the
-// back faces that lie behind the pixel (Wyman 2005, "An Approximate Image-Space Approach for Interactive Refraction").
+// ends or is empty the environment is seen, or a background of one colour. Thin surfaces do not bend the ray. Volumes bend it
+// where it enters, and where it leaves through the back faces that lie behind the pixel (Wyman 2005, "An Approximate
+// Image-Space Approach for Interactive Refraction").
 
+#feature BEFORE_COLOR is_before_color  // the background is one colour
+
+uniform vec3 u_background;           // its radiance
 uniform sampler2D u_behind_picture;  // premultiplied radiance, with mip levels
 uniform sampler2D u_behind_depth;    // of the opaque surfaces
 uniform sampler2D u_exit_depth;      // of the nearest back faces of volumes behind each pixel; 0: none
@@ -161,6 +165,7 @@ vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha, vec4 within) 
     float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(max(hit.z, 1e-20)), min(u_picture.w, 0.25 * u_reach));
     vec4 picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
     picture = hit.z > 0.0 ? picture : vec4(0.0);
+    if (is_before_color) return vec4(picture.rgb + (1.0 - picture.a) * u_background, 1.0);
     if (!has_environment) return picture;
     vec3 environment = u_env_intensity * prefiltered(direction, sqrt(alpha * u_lobe_share));
     return vec4(picture.rgb + (1.0 - picture.a) * environment, 1.0);

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "easypbr/gpu/dfg.h"
 #include "easypbr/gpu/ltc.h"
 #include "easypbr/render/frame/half_light.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/frame/shading_inputs.h"
 #include "easypbr/scene/resolve.h"
 
@@ -123,6 +125,10 @@ void set_transmission(ShaderInputs& values, const Frame& frame, const Transmissi
     values.set("u_behind_reach", float(behind.reach));
     values.set("u_lobe_sample", lobe_point(frame.sample_index, frame.sample_count));
     values.set("u_lobe_share", 1 / std::sqrt(float(frame.sample_count)));
+    if (const std::optional<Vec3> background = background_radiance(*frame.resolved)) {
+        values.define("BEFORE_COLOR");
+        values.set("u_background", *background);
+    }
 }
 
 void set_environment(ShaderInputs& values, const Frame& frame, const LightInputs& inputs, bool native) {
