@@ -4,7 +4,7 @@ import math
 import numpy as np
 import pytest
 
-from easypbr import Material, Mesh, Scene, Viewer, shapes
+from easypbr import Material, Mesh, Scene, Viewer, render, shapes
 
 #: Transmittance of a way of 1.
 ABSORBING = np.array([0.8, 0.5, 0.2])
@@ -192,3 +192,14 @@ def test_what_shines_in_a_volume_lights_what_is_beside_it_as_much_less():
     bare, within = (picture(meshes, above, samples=256) for meshes in ([plate, lamp], [block, plate, lamp]))
     # 1 %: the noise of both, and the larger picture of what is below a face of glass.
     np.testing.assert_allclose(within / bare, 1 / 1.5**2, rtol=0.01)
+
+
+@pytest.mark.parametrize("mode", ["raster", "path"])
+@pytest.mark.parametrize("thickness", [0, 1])
+def test_glass_on_a_white_page_is_bright(mode, thickness):
+    mesh = shapes.sphere()
+    mesh.material = glass(thickness=thickness)
+    codes = render(mesh, background="white", size=(160, 120), mode=mode)[40:80, 60:100, :3]
+    # Two faces leave 0.92 of what stands for white, 4, of which the tone curve makes 243. 20: the shadow on the ground behind,
+    # and noise.
+    assert np.median(codes) > 223
