@@ -45,7 +45,7 @@ void for_each_material(const MeshData& mesh, const Style& overrides, const Body&
     static const Material plain;
     if (mesh.F.empty() || resolve_style(mesh, overrides).mode != DrawMode::mesh) return;
     const auto material = [&](int i) -> const Material& {
-        return mesh.materials.empty() ? plain : mesh.materials[size_t(i)];
+        return size_t(i) < mesh.materials.size() ? mesh.materials[size_t(i)] : plain;
     };
     if (mesh.parts.empty()) body(material(0), 0, size_t(mesh.F.rows()));
     for (const MeshPart& part : mesh.parts)
