@@ -312,7 +312,9 @@ TEST(Denoise, FilterKeepsTheShapeOfHighlights) {
     const Target& smooth = filter.smooth(made.noisy(), transfers);
     for (int y = 26; y <= 38; ++y)
         for (int x = 42; x <= 54; ++x)
-            if (ring(x, y) > 0) EXPECT_NEAR(at(smooth, x, y) / light(x, y), 1, 0.5) << x << ' ' << y;
+            if (ring(x, y) > 0) {
+                EXPECT_NEAR(at(smooth, x, y) / light(x, y), 1, 0.5) << x << ' ' << y;
+            }
 }
 
 // A library that is not there is named, with what to do.
