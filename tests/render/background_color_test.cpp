@@ -139,9 +139,9 @@ app::Session session_of_ball(const Material& material, const Vec3& color) {
     s.environment.enabled = true;
     s.ground.mode = GroundMode::shadow;
     s.ground.height = -height;
-    s.camera.position = Vec3d(0, -0.6, 20);
+    s.camera.position = Vec3d(0, -0.6, 4.6);
     s.camera.target = Vec3d(0, -0.6, 0);
-    s.camera.fov_y_deg = 0.2f;
+    s.camera.fov_y_deg = 1;
     return session;
 }
 

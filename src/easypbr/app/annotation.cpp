@@ -287,8 +287,9 @@ std::vector<Tick> ticks_with_text(const std::vector<LogTick>& log_ticks) {
 /// for `most`.
 bool has_room(const std::vector<Tick>& ticks, const ValueRange& range, int most) {
     for (size_t i = 1; i < ticks.size(); ++i)
-        if (place_on_scale(ticks[i].value, range) - place_on_scale(ticks[i - 1].value, range) <
-            1.0 / (most + 1))
+        // Not a number where a tick is 0, just below the range.
+        if (!(place_on_scale(ticks[i].value, range) - place_on_scale(ticks[i - 1].value, range) >=
+              1.0 / (most + 1)))
             return false;
     return true;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include "easypbr/scene/auto_parameters.h"
@@ -245,21 +246,33 @@ size_t slab_at(const Box3d& bulk, int axis, const Vec3d& point) {
     return at > 0 ? std::min(slab_count - 1, size_t(at)) : 0;
 }
 
-using Columns = std::vector<std::pair<uint32_t, double>>;
+/// What samples are in a column of a grid, and how high.
+struct Column {
+    size_t count = 0;
+    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+};
 
-/// The samples' heights along an axis, each after the column of a grid over the other axes that it is in.
-Columns columns_along(int axis, const std::vector<SurfacePoint>& points, const Box3d& bulk, double size) {
-    Columns columns;
-    const auto cell = [&](const Vec3d& position, int across) {
-        const double last = std::ceil(bulk.sizes()[across] / size - 1e-6) - 1;
-        return uint32_t(std::clamp((position[across] - bulk.min()[across]) / size, 0.0, std::max(last, 0.0)));
+/// Of the samples within the bulk the heights along an axis, in the columns of a grid over the other axes.
+std::vector<Column> columns_along(int axis, const std::vector<SurfacePoint>& points, const Box3d& bulk,
+                                  double size) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto cells = [&](int across) {
+        return std::max<size_t>(1, size_t(std::ceil(bulk.sizes()[across] / size - 1e-6)));
     };
-    for (const SurfacePoint& point : points)
-        if (bulk.contains(point.position))
-            columns.emplace_back(
-                cell(point.position, (axis + 1) % 3) << 16 | cell(point.position, (axis + 2) % 3),
-                point.position[axis]);
-    std::ranges::sort(columns);
+    const size_t along_u = cells(u), along_v = cells(v);
+    const auto cell = [&](const Vec3d& position, int across, size_t count) {
+        return std::min(count - 1, size_t((position[across] - bulk.min()[across]) / size));
+    };
+    std::vector<Column> columns(along_u * along_v);
+    for (const SurfacePoint& point : points) {
+        if (!bulk.contains(point.position)) continue;
+        const double height = point.position[axis];
+        Column& column =
+            columns[cell(point.position, u, along_u) * along_v + cell(point.position, v, along_v)];
+        ++column.count;
+        column.low = std::min(column.low, height);
+        column.high = std::max(column.high, height);
+    }
     return columns;
 }
 
@@ -269,24 +282,21 @@ double thin_part(int axis, const std::vector<SurfacePoint>& points, const Box3d&
     const double side = std::max(bulk.sizes()[(axis + 1) % 3], bulk.sizes()[(axis + 2) % 3]);
     const double size = side / cells_for(points.size());
     const double most = std::min(3 * size, bulk.sizes()[axis] / 3);
-    const Columns columns = columns_along(axis, points, bulk, size);
     size_t thin = 0, all = 0;
-    for (size_t begin = 0, end = 0; begin < columns.size(); begin = end) {
-        while (end < columns.size() && columns[end].first == columns[begin].first) ++end;
-        if (end - begin < least_points) continue;
-        all += end - begin;
-        if (columns[end - 1].second - columns[begin].second <= most) thin += end - begin;
+    for (const Column& column : columns_along(axis, points, bulk, size)) {
+        if (column.count < least_points) continue;
+        all += column.count;
+        if (column.high - column.low <= most) thin += column.count;
     }
     return double(thin) / double(std::max<size_t>(1, all));
 }
 
 double filled_part(int axis, const std::vector<SurfacePoint>& points, const Box3d& bulk) {
     constexpr double cells = 16;
-    const double u = bulk.sizes()[(axis + 1) % 3], v = bulk.sizes()[(axis + 2) % 3];
-    const double size = std::max(u, v) / cells;
-    Columns columns = columns_along(axis, points, bulk, size);
-    const auto others = std::ranges::unique(columns, {}, &Columns::value_type::first);
-    return double(columns.size() - others.size()) / (std::ceil(u / size - 1e-6) * std::ceil(v / size - 1e-6));
+    const double side = std::max(bulk.sizes()[(axis + 1) % 3], bulk.sizes()[(axis + 2) % 3]);
+    const std::vector<Column> columns = columns_along(axis, points, bulk, side / cells);
+    const auto filled = std::ranges::count_if(columns, [](const Column& column) { return column.count > 0; });
+    return double(filled) / double(columns.size());
 }
 
 /// Nothing where the content is too small or flat, or has too few planes to judge by.

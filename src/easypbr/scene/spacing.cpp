@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -40,7 +39,9 @@ size_t count_occupied(const Array3f& V, const Box3d& box, int cells) {
     const float scale = float(1 / size);
     const float farthest = float(cells) * (1 + 1e-5f);  // the box's own end, rounded
     std::vector<std::atomic<uint32_t>> bits((size_t(cells) * size_t(cells) * size_t(cells) + 31) / 32);
+    std::atomic<size_t> total{0};
     parallel_chunks(size_t(V.rows()), spacing_grain, [&](size_t begin, size_t end) {
+        size_t count = 0;
         for (size_t i = begin; i < end; ++i) {
             const float* p = V.data() + 3 * i;
             size_t index = 0;
@@ -53,13 +54,8 @@ size_t count_occupied(const Array3f& V, const Box3d& box, int cells) {
             const uint32_t bit = 1u << (index & 31);
             std::atomic<uint32_t>& word = bits[index >> 5];
             if (inside && !(word.load(std::memory_order_relaxed) & bit))
-                word.fetch_or(bit, std::memory_order_relaxed);
+                count += (word.fetch_or(bit, std::memory_order_relaxed) & bit) == 0;
         }
-    });
-    std::atomic<size_t> total{0};
-    parallel_chunks(bits.size(), spacing_grain, [&](size_t begin, size_t end) {
-        size_t count = 0;
-        for (size_t i = begin; i < end; ++i) count += size_t(std::popcount(bits[i].load()));
         total += count;
     });
     return total;

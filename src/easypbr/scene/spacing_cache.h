@@ -16,6 +16,12 @@ class SpacingCache {
         return discs_.get(V.revision(), [&] { return automatic_discs(V); });
     }
 
+    /// Points that are a part of a cloud have discs of the whole's size.
+    void share_discs(const Array3f& whole, const Array3f& part) {
+        const AutomaticDiscs of_whole = discs(whole);
+        discs_.get(part.revision(), [&] { return of_whole; });
+    }
+
     /// Drops what was not asked for since the last call.
     void evict_unused() {
         spacings_.evict_unused();

@@ -330,13 +330,15 @@ std::shared_ptr<const MeshData> DrawableCache::clipped(const std::shared_ptr<con
                                                        bool by_vertex, bool labels, ElementSources& sources) {
     std::string key = fmt::format("cut {} {}", by_vertex, arrays_of(*whole));
     for (const Eigen::Vector4d& plane : planes) key += fmt::format(" {}", fmt::join(plane, " "));
-    return get(key, *whole, sources, [&](Entry& entry) {
+    const auto made = get(key, *whole, sources, [&](Entry& entry) {
         MeshData rest = cut(*whole, planes, by_vertex, entry.sources.faces, entry.sources.points);
         const Array1i& from = entry.sources.points;
         // Colours of labels are never mixed: a vertex that a cut makes has that of the nearer one.
         if (labels && !from.empty()) rest.C = rows_of(whole->C, {from.data(), size_t(from.size())});
         return rest;
     });
+    if (by_vertex) spacings_.share_discs(whole->V, made->V);
+    return made;
 }
 
 std::shared_ptr<const MeshData> DrawableCache::as_voxels(const std::shared_ptr<const MeshData>& centres,
