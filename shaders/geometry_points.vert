@@ -23,7 +23,6 @@ uniform vec3 u_size_pixels;  // diameter; diameter times w, or 0; least diameter
 uniform vec4 u_base_color;  // linear, opacity in w
 uniform vec3 u_towards_viewer;  // world, of a point without a normal: orthographic direction
 invariant gl_Position;
-invariant gl_PointSize;
 
 void main() {
     gl_Position = u_clip_from_mesh * vec4(a_position, 1.0);

@@ -112,7 +112,7 @@ def linear(codes):
 def test_bright_silhouettes_let_the_page_through_before_a_catcher(strength):
     ball = shapes.sphere()
     ball.material.base_color, ball.material.emissive = "#000000", (strength, strength, 0.5 * strength)
-    ball.material.ior = 1.0  # the page is not seen in it
+    ball.material.specular = 0.0  # the page is not seen in it
 
     def drawn(page):
         return render(ball, size=(100, 80), samples=8, background=page)[:40]  # above the ground

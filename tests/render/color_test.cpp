@@ -50,6 +50,7 @@ TEST(Colors, OfLabelsAreExact) {
             session.allow_native_geometry(native);
             session.settings().image.size = Vec2i(160, 120);
             session.settings().tonemap.exposure_compensation = 1.5f;
+            session.settings().style.point_size = 6;  // covers most of the sphere
             const Image picture = session.render({std::nullopt, samples, app::Encoding::srgb8});
             const Image element = session.render_layers({"element_id"}).at("element_id");
             int covered = 0;
