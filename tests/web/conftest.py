@@ -91,7 +91,10 @@ class Page:
             if shown.shape == pixels.shape and np.abs(shown.astype(int) - pixels).max() <= tolerance:
                 return
             self.page.wait_for_timeout(200)
-        raise AssertionError("another picture stays")
+        if shown.shape != pixels.shape:
+            raise AssertionError(f"another picture stays: {shown.shape}, expected {pixels.shape}")
+        apart = np.abs(shown.astype(int) - pixels).max(-1)
+        raise AssertionError(f"another picture stays: {(apart > tolerance).sum()} pixels differ, by up to {apart.max()}")
 
     def centre(self):
         box = self.canvas.bounding_box()
