@@ -51,7 +51,8 @@ double View::step(bool refines) {
     const bool is_held = !refines && wants_refinement();
     if ((own.live.is_busy() && !is_held) || has_orders()) return 0;
     const bool waits = is_moving() || own.owes_still || own.live.recording().is_running();
-    return waits ? 0.01 : rests() ? 2 * look_s : look_s;
+    // Input wakes it at once: what is looked for is what the program changes.
+    return waits ? 0.01 : rests(3) ? 6 * look_s : rests(1) ? 2 * look_s : look_s;
 }
 
 bool View::is_quick() const {
@@ -63,8 +64,8 @@ bool View::wants_refinement() const {
     return clients_.anybody_looks() && !is_quick() && !picture.has_failed() && !picture.is_complete();
 }
 
-bool View::rests() const {
-    return now_seconds() - std::max(own_->acted_s, own_->last_change_s) > 1;
+bool View::rests(double seconds) const {
+    return now_seconds() - std::max(own_->acted_s, own_->last_change_s) > seconds;
 }
 
 bool View::is_moving() const {
@@ -198,7 +199,7 @@ void View::tell_changes() {
     Own& own = *own_;
     const double now = now_seconds();
     // At rest only what leaves the picture as it is can have changed.
-    if (now - own.told_s < (rests() ? 0.5 : 0.1) && !own.told.empty()) return;
+    if (now - own.told_s < (rests(1) ? 0.5 : 0.1) && !own.told.empty()) return;
     own.told_s = now;
     const FieldTexts texts = texts_of(own.session.settings());
     if (const FieldTexts news = changed(own.told, texts); !news.empty())

@@ -65,8 +65,8 @@ class View {
     struct Own;
     bool has_orders() const { return inbox_.has_orders(clients_.view()); }
     bool waits_for_clients() const;
-    /// Nothing has been asked for and nothing has changed for a second: the scene is looked at less often.
-    bool rests() const;
+    /// Nothing has been asked for and nothing has changed for so long: the scene is looked at less often.
+    bool rests(double seconds) const;
     void act(const std::vector<Order>& orders);
     void obey(const Order& order);
     void obey(ClientId from, const Hello& message);
