@@ -10,22 +10,12 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "file_limit.h"
+#include "io/flat_image.h"
 #include "io/random_mesh.h"
 #include "io/same_bits.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::mesh_material_files_test {
-
-namespace {
-
-/// An image of one colour.
-std::shared_ptr<const Image> flat(uint8_t value) {
-    auto image = std::make_shared<Image>(2, 2, 3, PixelType::u8);
-    std::ranges::fill(image->pixels<uint8_t>(), value);
-    return image;
-}
-
-}  // namespace
 
 TEST(MeshMaterialFiles, ObjAndItsMaterialsAreWrittenTogetherOrNotAtAll) {
     const TemporaryFolder folder;

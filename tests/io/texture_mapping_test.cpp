@@ -9,18 +9,12 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "io/flat_image.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::texture_mapping_test {
 
 namespace {
-
-/// An image of one colour.
-std::shared_ptr<const Image> flat(uint8_t value) {
-    auto image = std::make_shared<Image>(2, 2, 3, PixelType::u8);
-    std::ranges::fill(image->pixels<uint8_t>(), value);
-    return image;
-}
 
 /// A square whose texture coordinates are its corners.
 MeshData textured_square(const fs::path& image) {

@@ -36,8 +36,8 @@ double least_cosine(float crease_angle_deg) {
     return std::cos(radians(double(std::clamp(crease_angle_deg, 0.0f, most)))) - rounding;
 }
 
-/// For each vertex whether the normal of one of its faces leans away from its own by more than half the
-/// angle. Else no two of its faces differ by more than the angle, and none is wound against the others.
+/// For each vertex whether the normal of one of its faces deviates from the vertex normal by more than half
+/// the angle. Else no two of its faces differ by more than the angle, and none is wound against the others.
 std::vector<char> leaning_vertices(const UnitedMesh& mesh, double least) {
     const Array3f N = vertex_normals(mesh.V, mesh.F);
     const double least_of_half = std::sqrt((1 + least) / 2);
