@@ -199,7 +199,7 @@ Mesh make_arrows(const FieldRef& starts, const FieldRef& vectors, const ArrowOpt
     MeshData mesh;
     mesh.name = "arrows";
     if (rows.empty()) return Mesh(std::move(mesh));
-    const auto of_arrow = size_t(rings_of_arrow * options.segments);
+    const size_t of_arrow = rings_of_arrow * size_t(options.segments);
     if (rows.size() > size_t(std::numeric_limits<int32_t>::max()) / of_arrow)
         throw ArgumentError(fmt::format("arrows: expected at most {} of {} segments, got {}",
                                         size_t(std::numeric_limits<int32_t>::max()) / of_arrow,

@@ -177,7 +177,7 @@ class TubeSurface {
     int32_t repeat_ring(int32_t ring, const LineFrame& normals, double slope) {
         const int32_t first = next(source_[size_t(ring)], sides_);
         for (int i = 0; i < sides_; ++i) {
-            V_.push_back(Vec3(V_[size_t(ring + i)]));
+            V_.push_back(Vec3(V_[size_t(ring) + size_t(i)]));
             N_.push_back(
                 (normals.around(circle_[size_t(i)]) + slope * normals.along).normalized().cast<float>());
         }
@@ -186,7 +186,7 @@ class TubeSurface {
     int32_t repeat_ring(int32_t ring, const Vec3d& normal) {
         const int32_t first = next(source_[size_t(ring)], sides_);
         for (int i = 0; i < sides_; ++i) {
-            V_.push_back(Vec3(V_[size_t(ring + i)]));
+            V_.push_back(Vec3(V_[size_t(ring) + size_t(i)]));
             N_.push_back(normal.cast<float>());
         }
         return first;

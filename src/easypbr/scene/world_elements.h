@@ -49,7 +49,8 @@ void for_each_material(const MeshData& mesh, const Style& overrides, const Body&
     };
     if (mesh.parts.empty()) body(material(0), 0, size_t(mesh.F.rows()));
     for (const MeshPart& part : mesh.parts)
-        body(material(part.material), size_t(part.first_face), size_t(part.first_face + part.face_count));
+        body(material(part.material), size_t(part.first_face),
+             size_t(part.first_face) + size_t(part.face_count));
 }
 
 }  // namespace easypbr::detail
