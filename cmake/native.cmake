@@ -27,7 +27,7 @@ file(CONFIGURE OUTPUT ${native_folder}/instruction_sets.h
      CONTENT "#define EASYPBR_INSTRUCTION_SETS(X) X(${native_set_names})\n")
 # Inlined wherever they are called, these would take as long to compile as all else.
 set(native_apart mesh_extended.texel_of lighting_surface_extended.prefiltered lighting_surface_extended.area_form
-                 lighting_surface_extended.through_surface)
+                 lighting_surface_extended.with_ground lighting_surface_extended.through_surface)
 foreach(shader IN ITEMS lighting_surface_extended path_lamps_extended path_scatter_extended)
   list(APPEND native_apart ${shader}.F_film ${shader}.charlie_lambda)
 endforeach()

@@ -14,3 +14,9 @@
 uniform int u_plain_lights;   // lights without shadows, the first ones
 uniform int u_single_lights;  // end of those with one shadow map
 uniform int u_block_lights;   // end of those with a cube, and of all
+
+// Part of a light of the block that reaches a surface. It is not asked for where there are no shadow maps.
+vec3 shadow_of(int index, vec3 position, vec3 normal, bool needed) {
+    if (has_shadow_cubes && index >= u_single_lights) return shadow_cube(index - u_plain_lights, position, normal, needed);
+    return shadow_single(index - u_plain_lights, position, normal, needed);
+}

@@ -6,7 +6,7 @@ vec3 anisotropic_radiance(Surface s) {
     vec2 alpha = anisotropic_alpha(s, s.alpha);
     float spread = sqrt(max(alpha.x * alpha.x - alpha.y * alpha.y, 0.0));
     vec3 round_lobe = vec3(0.0);
-    if (any_lane(spread < 0.01)) round_lobe = lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
+    if (any_lane(spread < 0.01)) round_lobe = lobe_radiance(s.position, s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
     if (!any_lane(spread >= 0.01)) return round_lobe;
     const int taps = 8;
     vec3 sum = vec3(0.0);
@@ -23,6 +23,10 @@ vec3 anisotropic_radiance(Surface s) {
     }
     vec3 along = sum / max(total, 1e-3);
     if (any_lane(total <= 1e-3)) along = total > 1e-3 ? along : prefiltered(s.normal, 1.0);
+    // Its width across the horizon.
+    float rises = dot(s.extension.tangent, u_ground.xyz);
+    float width = sqrt(mix(alpha.y * alpha.y, alpha.x * alpha.x, rises * rises));
+    along = with_ground(along, s.position, s.normal, reflect(-s.view, s.normal), width);
     return spread < 0.01 ? round_lobe : along;
 }
 
@@ -53,15 +57,14 @@ vec3 sheen_radiance(Surface s) {
 }
 
 vec3 indirect(Surface s, float visibility) {
-    vec3 lobe = has_anisotropy ? anisotropic_radiance(s) : lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
-    vec3 result = s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) +
-                  (s.energy.multiple + s.diffuse) * diffuse_light(s.normal, visibility, s.diffuse);
+    vec3 lobe = has_anisotropy ? anisotropic_radiance(s) : lobe_radiance(s.position, s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
+    vec3 result = s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) + matt_light(s, visibility);
     Extension e = s.extension;
     if (has_sheen && any_lane(max_channel(e.sheen_color) > 0.0))
         result = result * s.sheen_keep + e.sheen_color * min(s.sheen_albedo, 1.0) * sheen_light(sheen_radiance(s), visibility);
     if (has_clearcoat) {
         float coat_alpha = e.coat_roughness * e.coat_roughness;
-        vec3 coat = lobe_radiance(e.coat_normal, s.view, s.coat_n_dot_v, e.coat_roughness, coat_alpha);
+        vec3 coat = lobe_radiance(s.position, e.coat_normal, s.view, s.coat_n_dot_v, e.coat_roughness, coat_alpha);
         result = result * (1.0 - s.coat_albedo) +
                  s.coat_albedo * mirrored_light(coat, s.coat_n_dot_v, coat_alpha, visibility, vec3(0.04));
     }

@@ -20,7 +20,6 @@ vec3 scattered(vec3 l, Surface s) {
 
 // Light of the environment on a surface that sees a part of it.
 vec3 indirect(Surface s, float visibility) {
-    vec3 lobe = lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
-    return s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) +
-           (s.energy.multiple + s.diffuse) * diffuse_light(s.normal, visibility, s.diffuse);
+    vec3 lobe = lobe_radiance(s.position, s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
+    return s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) + matt_light(s, visibility);
 }

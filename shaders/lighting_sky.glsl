@@ -18,15 +18,24 @@ uniform sampler2D u_sky_visibility;
 uniform sampler2D u_indirect_diffuse;
 uniform sampler2D u_indirect_specular;
 
-vec3 prefiltered(vec3 direction, float roughness) {
-    return textureLod(u_prefiltered, u_env_from_world * direction, prefiltered_level(roughness, u_last_level)).rgb;
+// Divided by pi.
+vec3 environment_irradiance(vec3 normal) {
+    return u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
 }
 
-// Average radiance in the specular lobe.
-vec3 lobe_radiance(vec3 normal, vec3 view, float n_dot_v, float roughness, float alpha) {
+#include "lighting_ground.glsl"
+
+// Average radiance of the environment in a lobe around a direction.
+vec3 prefiltered(vec3 direction, float roughness) {
+    float level = prefiltered_level(roughness, u_last_level);
+    return has_environment ? u_env_intensity * textureLod(u_prefiltered, u_env_from_world * direction, level).rgb : vec3(0.0);
+}
+
+// Average radiance in the specular lobe of a surface at `position`.
+vec3 lobe_radiance(vec3 position, vec3 normal, vec3 view, float n_dot_v, float roughness, float alpha) {
     // The lobe leans towards the normal the more the rougher the surface is.
     vec3 dominant = normalize(mix(reflect(-view, normal), normal, alpha * alpha));
-    if (!samples_lobes) return prefiltered(dominant, roughness);
+    if (!samples_lobes) return with_ground(prefiltered(dominant, roughness), position, normal, dominant, alpha);
     // Seen from the side a lobe is NoV times as wide across the plane of incidence as within it, whereas the
     // environment is prefiltered for NoV = 1. The frames of an accumulated picture take it narrower, side by side
     // within the plane.
@@ -35,7 +44,8 @@ vec3 lobe_radiance(vec3 normal, vec3 view, float n_dot_v, float roughness, float
     vec3 facet = normalize(view + dominant);
     vec3 within = view - facet * dot(facet, view);
     vec3 h = normalize(facet + within * (slope * inversesqrt(max(dot(within, within), 1e-12))));
-    return prefiltered(reflect(-view, h), roughness * sqrt(narrowed));
+    vec3 direction = reflect(-view, h);
+    return with_ground(prefiltered(direction, roughness * sqrt(narrowed)), position, normal, direction, alpha * narrowed);
 }
 
 // Visibility with what surfaces of this albedo reflect into each other's recesses (Jimenez et al. 2016, a fit).
@@ -55,16 +65,19 @@ vec3 traced(sampler2D target) { return texelFetch(target, ivec2(gl_FragCoord.xy)
 
 vec3 indirect_diffuse() { return u_traced_scale * traced(u_indirect_diffuse); }
 
-// Irradiance divided by pi.
-vec3 diffuse_light(vec3 normal, float visibility, vec3 albedo) {
-    vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
+// Light of the environment that leaves a surface evenly: by its diffuse lobe, and after several bounces between its facets. To
+// those the ground is what it is to the specular lobe.
+vec3 matt_light(Surface s, float visibility) {
+    vec3 sky = has_environment ? environment_irradiance(s.normal) : vec3(0.0);
     if (has_traced_light) sky = sky * traced(u_sky_visibility) + indirect_diffuse();
-    return sky * diffuse_visibility(visibility, albedo);
+    vec3 between = sky;
+    if (has_ground && any_lane(any(greaterThan(s.energy.multiple, vec3(0.005)))))
+        between = with_ground(sky, s.position, s.normal, s.normal, 1.0);
+    return (s.energy.multiple * between + s.diffuse * sky) * diffuse_visibility(visibility, s.diffuse);
 }
 
-// Average radiance in the specular lobe, of which `lobe` is the environment's.
+// Average radiance in the specular lobe, of which `lobe` is the environment's and the ground's.
 vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec3 f0) {
-    lobe *= u_env_intensity;
     if (has_traced_light) {
         vec4 scene = texelFetch(u_indirect_specular, ivec2(gl_FragCoord.xy), 0);
         lobe = lobe * (1.0 - scene.a) + u_traced_scale * scene.rgb;
@@ -74,7 +87,6 @@ vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec
 
 // Average radiance in the lobe of the sheen, which is as wide as the sky.
 vec3 sheen_light(vec3 lobe, float visibility) {
-    lobe *= u_env_intensity;
     if (has_traced_light) lobe = lobe * traced(u_sky_visibility) + indirect_diffuse();
     return lobe * visibility;
 }

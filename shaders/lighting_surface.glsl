@@ -31,14 +31,6 @@ vec3 direct(Light light, Surface s) {
     return arrives * scattered(l, s);
 }
 
-// Part of a light with shadow maps that reaches a surface, whose own normal is `face`; `light` is what would be seen of it,
-// `lit` whether the surface is lit at all.
-vec3 shadow_on(int index, vec3 light, Surface s, vec3 face, bool lit) {
-    bool needed = lit && any(greaterThan(light, vec3(0.0)));
-    if (has_shadow_cubes && index >= u_single_lights) return shadow_cube(index - u_plain_lights, s.position, face, needed);
-    return shadow_single(index - u_plain_lights, s.position, face, needed);
-}
-
 // The lights of the block; `view_p` is the surface's position in view space.
 vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
     vec3 face = s.normal, radiance = vec3(0.0);
@@ -49,13 +41,14 @@ vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
     }
     for (int i = 0; i < u_block_lights; ++i) {
         vec3 light = direct(u_lights[i], s);
-        if (has_shadows && i >= u_plain_lights) light *= shadow_on(i, light, s, face, lit);
+        if (has_shadows && i >= u_plain_lights)
+            light *= shadow_of(i, s.position, face, lit && any(greaterThan(light, vec3(0.0))));
         radiance += light;
     }
     return radiance;
 }
 
-// Light of the environment; `material_occlusion` is the material's own.
+// Light of the environment and of the ground; `material_occlusion` is the material's own.
 vec3 environment_light(Surface s, vec2 uv, float material_occlusion) {
     float visibility = material_occlusion;
     if (has_traced_light) visibility = texelFetch(u_sky_visibility, ivec2(gl_FragCoord.xy), 0).a;
@@ -89,7 +82,7 @@ void main() {
     s.alpha = s.roughness * s.roughness;
     prepare(s, albedo, metallic, material.w);
 
-    vec3 radiance = has_environment ? environment_light(s, uv, material.z) : vec3(0.0);
+    vec3 radiance = has_environment || has_ground ? environment_light(s, uv, material.z) : vec3(0.0);
     float coverage = 1.0;
     if (sees_behind && u_first_block > 0.5) {
         vec4 light = lit ? transmitted(s) : vec4(0.0, 0.0, 0.0, 1.0);

@@ -167,7 +167,7 @@ vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha, vec4 within) 
     picture = hit.z > 0.0 ? picture : vec4(0.0);
     if (is_before_color) return vec4(picture.rgb + (1.0 - picture.a) * u_background, 1.0);
     if (!has_environment) return picture;
-    vec3 environment = u_env_intensity * prefiltered(direction, sqrt(alpha * u_lobe_share));
+    vec3 environment = prefiltered(direction, sqrt(alpha * u_lobe_share));
     return vec4(picture.rgb + (1.0 - picture.a) * environment, 1.0);
 }
 

@@ -243,6 +243,7 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     if (inputs.extensions) set_extensions(values, frame, targets, native);
     if (inputs.transmission) set_transmission(values, frame, *inputs.transmission, native);
     if (inputs.environment) set_environment(values, frame, inputs, native);
+    if (inputs.ground) inputs.ground->set(values);
     set_lights(values, frame, inputs.block, native);
     return values;
 }

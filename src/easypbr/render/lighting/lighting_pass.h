@@ -1,10 +1,13 @@
 // Lights the G-buffer.
 #pragma once
 
+#include <optional>
+
 #include "easypbr/gpu/environment_maps.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/screen_shader.h"
+#include "easypbr/render/lighting/mirrored_ground.h"
 #include "easypbr/render/raytrace/traced_light.h"
 #include "easypbr/render/shadow/light_block.h"
 
@@ -30,6 +33,7 @@ struct LightInputs {
     bool native = false;  ///< in host memory, by LightingPass::shade()
     LightBlock block = {};
     const gpu::EnvironmentMaps* environment = nullptr;  ///< with the first block, where there is one
+    std::optional<MirroredGround> ground = {};          ///< with the first block, unless rays find it
     const TracedLight* traced = nullptr;                ///< what rays found of the environment's light
     ExtensionSet extensions = 0;                        ///< of the surfaces
     const TransmissionInputs* transmission = nullptr;   ///< where they are transmissive

@@ -202,6 +202,8 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
     }
     if (caught && !inputs.native) ground_.begin_light(frame, targets);
     if (!frame.resolved->environment.empty()) inputs.environment = &environment_;
+    if (contents.ground && !contents.traced)
+        inputs.ground = GroundPass::mirrored(frame, bounds_of(*frame.scene));
     if (inputs.native) {
         const bool whole = &targets == &targets_ && inputs.environment &&
                            frame.resolved->settings.background.shows_environment();
@@ -225,6 +227,7 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
                     lighting_.draw_caught(frame, targets, inputs, ground_.light());
             });
         inputs.environment = nullptr;
+        inputs.ground.reset();
         first = false;
     } while (shadow_maps_.has_more());
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
 #include "easypbr/render/raytrace/ray_surface.h"
 #include "easypbr/render/raytrace/sky_place.h"
@@ -93,6 +94,7 @@ Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const R
 void RayLight::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
     resolved_ = &resolved;
     scene_ = &scene;
+    background_ = background_radiance(resolved);
     if (hash_ == resolved.environment.hash()) return;
     hash_.clear();  // until all is there: it can be interrupted
     sky_ = resolved.environment.image();
@@ -145,10 +147,12 @@ Vec3 RayLight::from_lights(const RayHit& hit, const Vec3& normal) const {
     return sum;
 }
 
-Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const {
+Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const {
     const Vec3 up = cosine_direction(RayFrame(hit.normal), random.next().tail<2>());
     const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up,
                                        std::numeric_limits<float>::infinity());
+    if (background_ && !scattered)
+        return *background_ * (open ? 1.0f : 1 - resolved_->settings.ground.shadow_strength);
     return open ? sky(direction) : Vec3(Vec3::Zero());
 }
 
@@ -158,7 +162,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
     const bool with_areas = has_areas(*resolved_);
     for (int bounce = 0; bounce < bounces; ++bounce) {
         if (!hit.item && scene_->ground()->shadow_catcher)
-            return sum + weight.cwiseProduct(caught(hit, direction, random));
+            return sum + weight.cwiseProduct(caught(hit, direction, scattered, random));
         const float dielectric = resolved_->settings.shading.dielectric_f0;
         if (hit.item && hit.item->style.mode == DrawMode::splats)
             return sum + weight.cwiseProduct(emission_at(*scene_, hit));

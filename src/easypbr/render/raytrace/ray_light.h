@@ -1,6 +1,8 @@
 // The light that a ray brings back.
 #pragma once
 
+#include <optional>
+
 #include "easypbr/render/raytrace/bright_sky.h"
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_scene.h"
@@ -36,14 +38,16 @@ class RayLight {
     Vec3 radiance(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const;
 
   private:
-    /// What a ground shows that catches shadows: the sky behind it, where it is open.
-    Vec3 caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const;
+    /// What a ground shows that catches shadows, where it is open: a background of one colour to mirrors,
+    /// else the sky behind it.
+    Vec3 caught(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const;
     Vec3 from_lights(const RayHit& hit, const Vec3& normal) const;
     /// Irradiance of the open sky on a surface, divided by pi.
     Vec3 even_sky(const Vec3& normal) const;
 
     const ResolvedSettings* resolved_ = nullptr;
     const RayScene* scene_ = nullptr;
+    std::optional<Vec3> background_;
     std::string hash_;
     Image sky_;
     BrightSky bright_;  ///< of the sky's picture

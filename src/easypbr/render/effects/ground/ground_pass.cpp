@@ -5,6 +5,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/render/raster/surface_writer.h"
 #include "easypbr/scene/resolve.h"
@@ -25,7 +26,34 @@ Plane plane_of(const Camera& camera, const ResolvedSettings& resolved) {
     return {up, resolved.settings.ground.height - up.dot(camera.position())};
 }
 
+Vec4 as_uniform(const Plane& plane) {
+    const Vec3 up = plane.up.cast<float>();
+    return {up.x(), up.y(), up.z(), float(plane.offset)};
+}
+
+/// Under the content, relative to the camera; w: where a plane has faded.
+Vec4 middle_of(const Frame& frame, const Plane& plane, const Box3d& bounds) {
+    Vec3d middle = bounds.center() - frame.camera.position();
+    middle += plane.up * (plane.offset - plane.up.dot(middle));
+    const Vec3 m = middle.cast<float>();
+    return {m.x(), m.y(), m.z(), frame.resolved->settings.ground.radius};
+}
+
 }  // namespace
+
+std::optional<MirroredGround> GroundPass::mirrored(const Frame& frame, const Box3d& bounds) {
+    const ResolvedSettings& resolved = *frame.resolved;
+    const auto& ground = resolved.settings.ground;
+    const bool catches = is_shadow_catcher(resolved);
+    const std::optional<Vec3> background = background_radiance(resolved);
+    if (catches && !background) return std::nullopt;
+    const Plane plane = plane_of(frame.camera, resolved);
+    return MirroredGround{.plane = as_uniform(plane),
+                          .color = catches ? *background : linear_from_srgb(ground.plane_color),
+                          .lit = !catches,
+                          .strength = ground.shadow_strength,
+                          .middle = middle_of(frame, plane, bounds)};
+}
 
 bool GroundPass::is_on(const ResolvedSettings& resolved) {
     const auto& ground = resolved.settings.ground;
@@ -60,8 +88,7 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     targets.surface_emission().bind();
     program.use();
     set_camera_uniforms(program, frame);
-    const Vec3 up = plane.up.cast<float>();
-    program.set("u_plane", Vec4(up.x(), up.y(), up.z(), float(plane.offset)));
+    program.set("u_plane", as_uniform(plane));
     program.set("u_color", linear_from_srgb(ground.plane_color));
     program.set("u_roughness", ground.plane_roughness);
     program.set("u_kind", code_of(shadow_catcher ? SurfaceKind::ground_catcher : SurfaceKind::ground_plane));
@@ -104,11 +131,7 @@ ShaderInputs GroundPass::finish_inputs(const Frame& frame, const GBuffer& target
         return values;
     }
     values.set("u_depth_target", targets.depth);
-    const Plane plane = plane_of(frame.camera, *frame.resolved);
-    Vec3d middle = bounds.center() - frame.camera.position();
-    middle += plane.up * (plane.offset - plane.up.dot(middle));
-    const Vec3 m = middle.cast<float>();
-    values.set("u_middle", Vec4(m.x(), m.y(), m.z(), ground.radius));
+    values.set("u_middle", middle_of(frame, plane_of(frame.camera, *frame.resolved), bounds));
     return values;
 }
 

@@ -1,10 +1,13 @@
 // The plane that the content stands on: a surface, or only the shadows on it.
 #pragma once
 
+#include <optional>
+
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
 #include "easypbr/render/frame/screen_shader.h"
+#include "easypbr/render/lighting/mirrored_ground.h"
 
 namespace easypbr::render {
 
@@ -24,6 +27,10 @@ class GroundPass {
 
     /// An orthographic camera whose depth holds all of the ground that is in the picture, as far as 30 radii.
     static void widen_depth(Camera& camera, const ResolvedSettings& resolved, const Box3d& bounds);
+
+    /// None where a catcher lies before anything but a background of one colour: that is mirrored without it.
+    /// `bounds`: of the content.
+    static std::optional<MirroredGround> mirrored(const Frame& frame, const Box3d& bounds);
 
     /// Writes the plane into the G-buffer where it is nearer than what is there.
     void draw(const Frame& frame, const GBuffer& targets);

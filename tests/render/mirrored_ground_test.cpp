@@ -1,0 +1,156 @@
+// What the raster frame shows of the ground in surfaces that mirror it, on both devices.
+#include "easypbr/core/color.h"
+#include "shadow_test.h"
+
+namespace easypbr::mirrored_ground_test {
+namespace {
+
+constexpr int size = 16;
+constexpr double height = 1.5;
+const Vec3 page(0.8f, 0.5f, 0.3f);
+
+Material metal(float roughness) {
+    Material m;
+    m.base_color = Vec3::Ones();
+    m.roughness = roughness;
+    m.metallic = 1;
+    return m;
+}
+
+/// A ball of radius 1 above a ground; the picture shows the place (0, -0.6, 0.8) of it, from ahead: a mirror
+/// turns the view there to (0, -0.96, 0.28), which meets the ground at (0, -1.5, 1.0625).
+Scene scene_of_ball(const Material& material) {
+    Scene scene;
+    Mesh ball = make_sphere(1, 256);
+    ball.set_material(material);
+    scene.show(ball, "ball");
+    return scene;
+}
+
+app::Session session_on_ground(const Scene& scene, GroundMode mode) {
+    app::Session session = plain_session(scene, size);
+    Settings& s = session.settings();
+    s.shadows.enabled = true;
+    s.shadows.mode = ShadowMode::hard;
+    s.background.mode = BackgroundMode::color;
+    s.background.color = page;
+    s.ground.mode = mode;
+    s.ground.height = -height;
+    s.camera.position = Vec3d(0, -0.6, 4.6);
+    s.camera.target = Vec3d(0, -0.6, 0);
+    s.camera.fov_y_deg = 1;
+    return session;
+}
+
+Vec3 mean_of(app::Session& session, int samples = 1) {
+    const Image image = render_linear(session, samples);
+    Vec3 sum = Vec3::Zero();
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) sum += Vec3(image.at<float>(x, y));
+    return sum / float(size * size);
+}
+
+void expect_near(const Vec3& seen, const Vec3& expected, double tolerance, const char* what) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], tolerance) << what << ", " << c;
+}
+
+// Before a background of one colour, in a sky that differs from it and without one. 0.005: the mean of a
+// mirror's directional albedo at a roughness of 0 is 0.999, and halves have 11 bits.
+TEST(MirroredGround, IsTheBackgroundUnderACatcher) {
+    for (const bool sky : {true, false})
+        for (const bool native : {true, false}) {
+            Scene scene = scene_of_ball(metal(0));
+            if (sky) scene.set_environment(constant_environment(3));
+            app::Session session = session_on_ground(scene, GroundMode::shadow);
+            session.settings().environment.enabled = sky;
+            session.allow_native_geometry(native);
+            expect_near(mean_of(session), linear_from_srgb(page), 0.005, native ? "native" : "driver");
+        }
+}
+
+// Of the sun behind the ball that it hides from the place, and of one that it does not hide.
+TEST(MirroredGround, ShowsTheShadowOnIt) {
+    for (const bool native : {true, false})
+        for (const float strength : {0.5f, 1.0f})
+            for (const bool behind : {true, false}) {
+                Scene scene = scene_of_ball(metal(0));
+                scene.set_light("sun", directional(Vec3(0, -1.5f, behind ? 1.0625f : -1.0625f)));
+                app::Session session = session_on_ground(scene, GroundMode::shadow);
+                session.settings().ground.shadow_strength = strength;
+                session.allow_native_geometry(native);
+                const float left = behind ? 1 - strength : 1;
+                expect_near(mean_of(session), left * linear_from_srgb(page), 0.005,
+                            behind ? "behind" : "before");
+            }
+}
+
+// A plane of this colour in the sun's irradiance 1 has the radiance color / pi.
+TEST(MirroredGround, IsThePlaneInItsLight) {
+    const Vec3 color(0.9f, 0.6f, 0.2f);
+    for (const bool native : {true, false})
+        for (const bool behind : {true, false}) {
+            Scene scene = scene_of_ball(metal(0));
+            const Vec3 sun = Vec3(0, -1.5f, behind ? 1.0625f : -1.0625f).normalized();
+            scene.set_light("sun", directional(sun));
+            app::Session session = session_on_ground(scene, GroundMode::plane);
+            session.settings().ground.plane_color = color;
+            session.allow_native_geometry(native);
+            const float lit = behind ? 0 : -sun.y() / float(pi);
+            expect_near(mean_of(session), lit * linear_from_srgb(color), 0.005, native ? "native" : "driver");
+        }
+}
+
+// A wall has the horizon in the middle of its lobe, whatever the roughness: half of the sky's light is left.
+// 0.01: the split sum's table, and the lobe that leans towards the normal.
+TEST(MirroredGround, FillsHalfOfAWallsLobe) {
+    for (const float roughness : {0.1f, 0.4f, 0.7f}) {
+        Scene scene;
+        scene.show(facing_square(1, metal(roughness)), "wall");
+        scene.set_environment(constant_environment(1));
+        app::Session session = session_on_ground(scene, GroundMode::shadow);
+        session.settings().environment.enabled = true;
+        session.settings().camera.position = Vec3d(0, 0, 5);
+        session.settings().camera.target = Vec3d(0, 0, 0);
+        const Vec3 expected = 0.5f * (Vec3::Ones() + linear_from_srgb(page));
+        expect_near(mean_of(session), expected, 0.01, "wall");
+    }
+}
+
+// A floor of its own above the ground mirrors nothing of it, however rough and however flat it is seen.
+TEST(MirroredGround, IsHiddenByWhatFacesUp) {
+    for (const float roughness : {0.1f, 0.4f, 0.7f, 1.0f}) {
+        Scene scene;
+        scene.show(facing_square(20, metal(roughness)), "floor");
+        scene.set_environment(constant_environment(1));
+        app::Session session = session_on_ground(scene, GroundMode::shadow);
+        session.settings().environment.enabled = true;
+        session.settings().background.color = Vec3::Zero();
+        session.settings().camera.up = "+z";
+        session.settings().camera.position = Vec3d(0, -5, 1);
+        session.settings().camera.target = Vec3d(0, 0, 0);
+        // A white metal disappears in an even sky; 0.01: the split sum's table.
+        expect_near(mean_of(session), Vec3::Ones(), 0.01, "floor");
+    }
+}
+
+// As paths have it, of all places of the ball. The lobes of the raster frame are those of surfaces seen along
+// the normal, its ground is not darkened by the ball's hiding the sky: 0.06 of white on average.
+TEST(MirroredGround, IsAsPathsFindIt) {
+    for (const float roughness : {0.1f, 0.3f, 0.5f}) {
+        Scene scene = scene_of_ball(metal(roughness));
+        scene.set_environment(constant_environment(0.3f));
+        app::Session session = session_on_ground(scene, GroundMode::shadow);
+        Settings& s = session.settings();
+        s.environment.enabled = true;
+        s.camera.position = Vec3d(0, 0.5, 8);
+        s.camera.target = Vec3d(0, 0, 0);
+        s.camera.fov_y_deg = 10;
+        const Vec3 raster = mean_of(session);
+        s.path.enabled = true;
+        s.path.denoise = Denoising::off;
+        expect_near(raster, mean_of(session, 64), 0.06, "ball");
+    }
+}
+
+}  // namespace
+}  // namespace easypbr::mirrored_ground_test
