@@ -4,6 +4,8 @@
 #include <numeric>
 #include <random>
 
+#include "easypbr/app/output.h"
+#include "easypbr/core/color.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/settings.h"
@@ -262,6 +264,34 @@ TEST(Points, WithNormalsAreLit) {
     // A splat is flat, its normal that of its centre: off by half a splat at most.
     for (const auto& [x, y] : {std::pair{32, 32}, {20, 32}, {40, 44}})
         EXPECT_NEAR(a.at<float>(x, y)[0], b.at<float>(x, y)[0], 0.02) << x << ' ' << y;
+}
+
+/// Relative luminance of a grey of 8 bits.
+double luminance_of(uint8_t code) {
+    return double(linear_from_srgb(Vec3::Constant(float(code) / 255)).x());
+}
+
+// Three points without colours before the default background and the dark preset's, whose contrast is 7.4
+// (WCAG 2.2): a grey between them has one of 2.7 to both.
+TEST(Points, WithoutColorsAreToldFromThePage) {
+    for (const char* preset : {"studio", "dark"})
+        for (const bool native : {true, false}) {
+            app::Session session(scene_of(cloud(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}})));
+            app::apply_preset(session, preset);
+            session.settings().image.size = Vec2i(64, 64);
+            session.settings().style.point_size = 8.0f;
+            session.allow_native_geometry(native);
+            const Image image = session.render({std::nullopt, 1, app::Encoding::srgb8});
+            const double page = luminance_of(image.at<uint8_t>(0, 0)[0]);
+            double most = 0;
+            for (int y = 0; y < 64; ++y)
+                for (int x = 0; x < 64; ++x) {
+                    const double point = luminance_of(image.at<uint8_t>(x, y)[0]);
+                    const auto [dark, light] = std::minmax(page, point);
+                    most = std::max(most, (light + 0.05) / (dark + 0.05));
+                }
+            EXPECT_GT(most, 2.5) << preset << ", " << native;
+        }
 }
 
 TEST(Points, OddCloudsGiveAPicture) {

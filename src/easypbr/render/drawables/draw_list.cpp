@@ -18,6 +18,14 @@ Material material_of(const MeshData& mesh, const MeshPart& part) {
     return size_t(part.material) < mesh.materials.size() ? mesh.materials[size_t(part.material)] : Material{};
 }
 
+/// Linear base colour of points without colour or light: as far from the default background as from a dark
+/// one.
+constexpr float unlit_point = 0.22f;
+
+bool has_colors(const DrawItem& item) {
+    return item.with_colors || item.colors.values || item.material.base_color_texture;
+}
+
 /// An object and all that decides how it is drawn.
 struct Source {
     const SceneSnapshot::Object& object;
@@ -94,6 +102,8 @@ void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& lis
             item.kind = source.settings.edl.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
         else if (!lit && source.colors.exact)
             item.kind = SurfaceKind::exact;
+        if (item.kind != SurfaceKind::lit && !has_colors(item) && item.material.has_default_color())
+            item.material.base_color = Vec3::Constant(unlit_point);
     }
     list.items[kind].push_back(std::move(item));
 }
