@@ -10,6 +10,8 @@
 
 uniform vec4 u_ground;            // its up axis; its height above the camera
 uniform vec3 u_ground_color;      // of a plane; of a catcher: the background's radiance
+uniform vec3 u_ground_sky;        // the environment's light on it, divided by pi
+uniform vec3 u_ground_hidden;     // mean radiance of the environment below
 uniform float u_ground_strength;  // of a catcher's shadow
 uniform vec4 u_ground_middle;     // as u_middle of ground_finish.frag
 
@@ -32,7 +34,7 @@ vec3 arriving_on_ground(Light light, vec3 place) {
 // nothing stood there.
 vec3 light_on_ground(vec3 place, bool needed, out vec3 open) {
     vec3 up = u_ground.xyz;
-    open = has_environment ? environment_irradiance(up) : vec3(0.0);
+    open = u_ground_sky;
     vec3 lit = open;
     for (int i = 0; i < u_block_lights; ++i) {
         vec3 arrives = arriving_on_ground(u_lights[i], place);
@@ -75,8 +77,13 @@ vec3 with_ground(vec3 sky, vec3 position, vec3 normal, vec3 direction, float alp
     if (is_ground_lit) below *= 1.0 - smoothstep(0.4, 1.0, distance(place, u_ground_middle.xyz) / u_ground_middle.w);
     vec3 ground = ground_radiance(place, meets);
     // The environment's lower half is hidden. Its mean is not what narrow lobes see of it: little is left of those.
-    vec3 hidden = has_environment ? environment_irradiance(-up) : vec3(0.0);
     float b2 = below * below, b4 = b2 * b2;
-    vec3 left = max(sky - below * hidden, 0.0) * (1.0 - b4 * b4);
+    vec3 left = max(sky - below * u_ground_hidden, 0.0) * (1.0 - b4 * b4);
     return meets ? left + below * ground : sky;
+}
+
+// The same of the lobe that a matt surface has, without what hides light from the ground.
+vec3 with_even_ground(vec3 sky, vec3 normal) {
+    vec3 ground = is_ground_lit ? u_ground_color * u_ground_sky : u_ground_color;
+    return max(sky + (0.5 - 0.5 * dot(normal, u_ground.xyz)) * (ground - u_ground_hidden), 0.0);
 }

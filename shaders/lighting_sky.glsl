@@ -18,11 +18,6 @@ uniform sampler2D u_sky_visibility;
 uniform sampler2D u_indirect_diffuse;
 uniform sampler2D u_indirect_specular;
 
-// Divided by pi.
-vec3 environment_irradiance(vec3 normal) {
-    return u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
-}
-
 #include "lighting_ground.glsl"
 
 // Average radiance of the environment in a lobe around a direction.
@@ -68,11 +63,9 @@ vec3 indirect_diffuse() { return u_traced_scale * traced(u_indirect_diffuse); }
 // Light of the environment that leaves a surface evenly: by its diffuse lobe, and after several bounces between its facets. To
 // those the ground is what it is to the specular lobe.
 vec3 matt_light(Surface s, float visibility) {
-    vec3 sky = has_environment ? environment_irradiance(s.normal) : vec3(0.0);
+    vec3 sky = has_environment ? u_env_intensity * textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb : vec3(0.0);
     if (has_traced_light) sky = sky * traced(u_sky_visibility) + indirect_diffuse();
-    vec3 between = sky;
-    if (has_ground && any_lane(any(greaterThan(s.energy.multiple, vec3(0.005)))))
-        between = with_ground(sky, s.position, s.normal, s.normal, 1.0);
+    vec3 between = has_ground ? with_even_ground(sky, s.normal) : sky;
     return (s.energy.multiple * between + s.diffuse * sky) * diffuse_visibility(visibility, s.diffuse);
 }
 

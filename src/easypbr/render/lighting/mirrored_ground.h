@@ -9,6 +9,8 @@ namespace easypbr::render {
 struct MirroredGround {
     Vec4 plane;      ///< its up axis; its height above the camera
     Vec3 color;      ///< base colour of the plane; radiance of the background
+    Vec3 sky;        ///< light of the environment on it, divided by pi
+    Vec3 hidden;     ///< mean radiance of the environment below
     bool lit;        ///< a plane, not a catcher
     float strength;  ///< of the catcher's shadow
     Vec4 middle;  ///< of the plane, under the content, relative to the camera; w: radius at which nothing is
@@ -18,6 +20,8 @@ struct MirroredGround {
         values.define("GROUND");
         values.set("u_ground", plane);
         values.set("u_ground_color", color);
+        values.set("u_ground_sky", sky);
+        values.set("u_ground_hidden", hidden);
         values.set("u_ground_strength", strength);
         if (!lit) return;
         values.define("GROUND_PLANE");

@@ -48,8 +48,15 @@ std::optional<MirroredGround> GroundPass::mirrored(const Frame& frame, const Box
     const std::optional<Vec3> background = background_radiance(resolved);
     if (catches && !background) return std::nullopt;
     const Plane plane = plane_of(frame.camera, resolved);
+    const auto sky = [&](const Vec3d& normal) -> Vec3 {
+        const Vec3 in_environment = resolved.R_env_world * normal.cast<float>();
+        return resolved.settings.environment.intensity *
+               resolved.environment.irradiance_over_pi(in_environment);
+    };
     return MirroredGround{.plane = as_uniform(plane),
                           .color = catches ? *background : linear_from_srgb(ground.plane_color),
+                          .sky = sky(plane.up),
+                          .hidden = sky(-plane.up),
                           .lit = !catches,
                           .strength = ground.shadow_strength,
                           .middle = middle_of(frame, plane, bounds)};
