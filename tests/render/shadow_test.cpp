@@ -212,6 +212,40 @@ TEST(Shadow, PenumbraOfAKnifeEdge) {
             }
 }
 
+// A closed box stands on a ground that a lamp lights from within the scene: along the box's foot, where the
+// lamp is hidden, no light is left, whichever face of the lamp's cube sees it.
+TEST(Shadow, OfAClosedBoxReachesItsFootInEachFaceOfACube) {
+    for (const char* up : {"+x", "-x", "+y", "-y", "+z", "-z"})
+        for (const bool native : {true, false}) {
+            const Vec3d axis = parse_up(up);
+            const Mat3d R = Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitY(), axis).toRotationMatrix();
+            const auto placed = [&](const Vec3d& p) { return Vec3d(R * p); };
+            Scene scene;
+            Mesh box = make_box(Vec3::Constant(0.8f));
+            box.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(placed(Vec3d(1.2, 0.4, -0.3)))));
+            scene.show(box, "box");
+            scene.set_light("lamp", point(placed(Vec3d(0.5, 2, 1)).cast<float>(), 0.05f));
+            for (const ShadowMode mode : modes) {
+                app::Session session = shadow_session(scene, mode, 32);
+                session.allow_native_geometry(native);
+                Settings& s = session.settings();
+                s.shadows.enabled = true;
+                s.ground.mode = GroundMode::plane;
+                s.ground.height = 0.0;
+                s.camera.up = up;
+                s.camera.projection = Projection::orthographic;
+                s.camera.ortho_height = 0.05;
+                s.camera.target = placed(Vec3d(1.63, 0, -0.4));
+                s.camera.position = placed(Vec3d(1.63, 3, -0.399));
+                const Image picture = render_linear(session);
+                float most = 0;
+                for (int y = 0; y < 32; ++y)
+                    for (int x = 0; x < 32; ++x) most = std::max(most, picture.at<float>(x, y)[0]);
+                EXPECT_EQ(most, 0) << up << ", mode " << int(mode) << ", " << native;
+            }
+        }
+}
+
 // A lamp 2 above a floor of half size 50, whose automatic radius would be 3.5: nothing hides any of it.
 // 0.001: as NoAcneOnAPlane.
 TEST(Shadow, AutomaticEmittersLightTheFloorBelowThem) {

@@ -69,7 +69,8 @@ bool MeshShadows::rasterise_opaque(const ShadowView& view, std::span<const DrawI
     // What is closed casts with what faces the light: behind each of its back faces lies nothing nearer.
     // A light within it has some of its vertices behind it: then both sides cast.
     const bool both_sides = !closed_.is_known(mesh) || !std::ranges::all_of(parts, is_solid),
-               mirrored = first.object->T_world_mesh.linear().determinant() < 0;
+               turned = view.R_light_world.determinant() < 0,  // three faces of a cube
+        mirrored = (first.object->T_world_mesh.linear().determinant() < 0) != turned;
     return std::ranges::all_of(opaque_runs_of(parts), [&](const MeshPart& run) {
         ScreenTriangles triangles{mesh.V,
                                   mesh.F,
