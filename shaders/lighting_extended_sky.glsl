@@ -18,7 +18,8 @@ vec3 anisotropic_radiance(Surface s) {
         vec3 l = reflect(-s.view, facet);
         float weight = max(dot(s.normal, l), 0.0);
         float gap = spread * steep * steep * steep * u_tap_gap / float(taps);
-        sum += weight * prefiltered(l, sqrt(sqrt(min(alpha.y * alpha.y + gap * gap, 1.0))));
+        float tap = sqrt(min(alpha.y * alpha.y + gap * gap, 1.0));
+        sum += weight * prefiltered(above_horizon(l, tap), sqrt(tap));
         total += weight;
     }
     vec3 along = sum / max(total, 1e-3);

@@ -18,19 +18,24 @@ uniform sampler2D u_sky_visibility;
 uniform sampler2D u_indirect_diffuse;
 uniform sampler2D u_indirect_specular;
 
-#include "lighting_ground.glsl"
-
 // Average radiance of the environment in a lobe around a direction.
 vec3 prefiltered(vec3 direction, float roughness) {
     float level = prefiltered_level(roughness, u_last_level);
     return has_environment ? u_env_intensity * textureLod(u_prefiltered, u_env_from_world * direction, level).rgb : vec3(0.0);
 }
 
+#include "lighting_ground.glsl"
+
+// Around a direction that it reflects.
+vec3 mirrored_lobe(vec3 position, vec3 normal, vec3 direction, float roughness, float alpha) {
+    return with_ground(prefiltered(above_horizon(direction, alpha), roughness), position, normal, direction, alpha);
+}
+
 // Average radiance in the specular lobe of a surface at `position`.
 vec3 lobe_radiance(vec3 position, vec3 normal, vec3 view, float n_dot_v, float roughness, float alpha) {
     // The lobe leans towards the normal the more the rougher the surface is.
     vec3 dominant = normalize(mix(reflect(-view, normal), normal, alpha * alpha));
-    if (!samples_lobes) return with_ground(prefiltered(dominant, roughness), position, normal, dominant, alpha);
+    if (!samples_lobes) return mirrored_lobe(position, normal, dominant, roughness, alpha);
     // Seen from the side a lobe is NoV times as wide across the plane of incidence as within it, whereas the
     // environment is prefiltered for NoV = 1. The frames of an accumulated picture take it narrower, side by side
     // within the plane.
@@ -39,8 +44,7 @@ vec3 lobe_radiance(vec3 position, vec3 normal, vec3 view, float n_dot_v, float r
     vec3 facet = normalize(view + dominant);
     vec3 within = view - facet * dot(facet, view);
     vec3 h = normalize(facet + within * (slope * inversesqrt(max(dot(within, within), 1e-12))));
-    vec3 direction = reflect(-view, h);
-    return with_ground(prefiltered(direction, roughness * sqrt(narrowed)), position, normal, direction, alpha * narrowed);
+    return mirrored_lobe(position, normal, reflect(-view, h), roughness * sqrt(narrowed), alpha * narrowed);
 }
 
 // Visibility with what surfaces of this albedo reflect into each other's recesses (Jimenez et al. 2016, a fit).

@@ -26,6 +26,12 @@ Plane plane_of(const Camera& camera, const ResolvedSettings& resolved) {
     return {up, resolved.settings.ground.height - up.dot(camera.position())};
 }
 
+/// Whether a camera sees a plane's upper side.
+bool is_above(const Frame& frame, const Plane& plane) {
+    const Vec3d forward = -frame.camera.T_world_cam.linear().col(2);
+    return frame.orthographic() ? plane.up.dot(forward) < 0 : plane.offset < 0;
+}
+
 Vec4 as_uniform(const Plane& plane) {
     const Vec3 up = plane.up.cast<float>();
     return {up.x(), up.y(), up.z(), float(plane.offset)};
@@ -48,6 +54,9 @@ std::optional<MirroredGround> GroundPass::mirrored(const Frame& frame, const Box
     const std::optional<Vec3> background = background_radiance(resolved);
     if (catches && !background) return std::nullopt;
     const Plane plane = plane_of(frame.camera, resolved);
+    if (!is_above(frame, plane)) return std::nullopt;
+    // Within the content a floor of its own hides the catcher.
+    if (catches && bounds.contains(frame.camera.position())) return std::nullopt;
     const auto sky = [&](const Vec3d& normal) -> Vec3 {
         const Vec3 in_environment = resolved.R_env_world * normal.cast<float>();
         return resolved.settings.environment.intensity *
@@ -59,6 +68,7 @@ std::optional<MirroredGround> GroundPass::mirrored(const Frame& frame, const Box
                           .hidden = sky(-plane.up),
                           .lit = !catches,
                           .strength = ground.shadow_strength,
+                          .roughness = ground.plane_roughness,
                           .middle = middle_of(frame, plane, bounds)};
 }
 
@@ -152,8 +162,7 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
 void GroundPass::shade(const Frame& frame, const GBuffer& targets) {
     const auto& ground = frame.resolved->settings.ground;
     const Plane plane = plane_of(frame.camera, *frame.resolved);
-    const Vec3d forward = -frame.camera.T_world_cam.linear().col(2);
-    if (frame.orthographic() ? plane.up.dot(forward) >= 0 : plane.offset >= 0) return;  // seen from below
+    if (!is_above(frame, plane)) return;
     // Where the plane is in clip coordinates, the depth of its points follows from x and y.
     const Mat4d clip_from_world = frame.clip_from_view * frame.camera.view();
     const Eigen::Vector4d own(plane.up.x(), plane.up.y(), plane.up.z(), -ground.height);
