@@ -379,15 +379,17 @@ INLINE vec2 layer_bounds(const Layers& s, const vec3& place, const vec2& distanc
               right = largest_of(select(needed, block(place.x + distance.x + texel), vint(-1))),
               top = least_of(select(needed, block(place.y - distance.y - texel), outside)),
               bottom = largest_of(select(needed, block(place.y + distance.y + texel), vint(-1)));
-    float least = 1e38f, largest = -1e38f;
+    // What is read past the last block is there (ShadowMaps::note_bounds()).
+    vfloat least = 1e38f, largest = -1e38f;
     for (int y = top; y <= bottom; ++y) {
         const size_t row = (size_t(first) * size_t(blocks) + size_t(y)) * size_t(blocks);
-        for (int x = left; x <= right; ++x) {
-            least = s.least[row + size_t(x)] < least ? s.least[row + size_t(x)] : least;
-            largest = s.largest[row + size_t(x)] > largest ? s.largest[row + size_t(x)] : largest;
+        for (int x = left; x <= right; x += lanes) {
+            const vbool within = lane_numbers() + x <= right;
+            least = min(least, select(within, vfloat(load<Floats>(s.least + row + x)), vfloat(1e38f)));
+            largest = max(largest, select(within, vfloat(load<Floats>(s.largest + row + x)), vfloat(-1e38f)));
         }
     }
-    return {least, largest};
+    return {-largest_of(-least), largest_of(largest)};
 }
 
 /// The first layer is 0; the texel must be inside.

@@ -12,6 +12,9 @@
 namespace easypbr::render {
 namespace {
 
+/// Elements past the last one that vectors of any instruction set may read (native/simd/samplers.h).
+constexpr size_t read_past = 16;
+
 /// Bytes that all maps together may take; more lights than that are drawn in turns.
 constexpr size_t memory_limit = size_t(512) << 20;
 /// Every driver's least limit of layers in an array.
@@ -333,8 +336,8 @@ bool ShadowMaps::grow(int layers) {
     if (in_host_memory_) {
         host_maps_.resize(size_t(after) * size_t(resolution_) * size_t(resolution_));
         const auto blocks = size_t(native::Layers::blocks_of(resolution_));
-        least_.resize(size_t(after) * blocks * blocks);
-        largest_.resize(size_t(after) * blocks * blocks);
+        least_.resize(size_t(after) * blocks * blocks + read_past);
+        largest_.resize(size_t(after) * blocks * blocks + read_past);
         prepare_tints();
         return true;
     }
