@@ -9,21 +9,11 @@
 #include "easypbr/core/math.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
+#include "scene/cube_mesh.h"
 
 namespace easypbr::crease_test {
 
 namespace {
-
-/// A cube of 8 vertices and 12 triangles, two for each side.
-MeshData cube() {
-    MeshData mesh;
-    Array3f::Dense V(8, 3);
-    for (int i = 0; i < 8; ++i) V.row(i) << float(i & 1), float(i >> 1 & 1), float(i >> 2);
-    mesh.V = std::move(V);
-    mesh.F = Array3i::Dense{{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                            {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
-}
 
 /// Two triangles with a common edge along y, the second turned down by an angle. At the edge each has
 /// vertices of its own, as at a seam of texture coordinates.
@@ -222,6 +212,47 @@ TEST(Creases, HoldForOtherPositions) {
     for (Eigen::Index f = 0; f < 12; ++f)
         // Both halves of a parallelogram have the same normal, to a few roundings.
         for (int k = 0; k < 3; ++k) EXPECT_GT(mesh.N.row(mesh.F(f, k)).dot(faces.row(f)), 1 - 1e-6f) << f;
+}
+
+TEST(Creases, DrawnNormalsKeepTangentsWhereNothingIsSplit) {
+    MeshData soft = folded(20), sharp = folded(70);
+    soft.uv_tangents = sharp.uv_tangents = Array4f::Dense(Array4f::Dense::Constant(6, 4, 1));
+    add_drawn_normals(soft);
+    add_drawn_normals(sharp);
+    EXPECT_EQ(soft.uv_tangents.rows(), 6);
+    EXPECT_EQ(soft.N.row(soft.F(0, 0)), soft.N.row(soft.F(1, 0)));
+    EXPECT_TRUE(sharp.uv_tangents.empty());
+    EXPECT_EQ(sharp.N.row(sharp.F(0, 0)), Eigen::RowVector3f(0, 0, 1));
+    // What is drawn flat has the faces' own.
+    MeshData flat = folded(20);
+    flat.style.flat = true;
+    add_drawn_normals(flat);
+    EXPECT_EQ(flat.N.row(flat.F(0, 0)), Eigen::RowVector3f(0, 0, 1));
+}
+
+TEST(Creases, OnlyMissingNormalsAreFilledIn) {
+    MeshData mesh = cube();
+    Array3f::Dense N = Array3f::Dense::Zero(8, 3);
+    const Eigen::RowVector3f own = Eigen::RowVector3f(0.6f, 0, 0.8f);
+    N.row(0) = own;
+    mesh.N = N;
+    Array1f::Dense height(8);
+    for (int i = 0; i < 8; ++i) height[i] = float(i);
+    mesh.scalars = {{"height", Array1f(height)}, {"side", Array1f(Array1f::Dense::LinSpaced(12, 0, 11))}};
+    const MeshData before = mesh;
+    fill_normals(mesh, 60);
+    EXPECT_NO_THROW(validate(mesh));
+    ASSERT_EQ(mesh.V.rows(), 1 + 7 * 3) << "one for each side but at the vertex that has a normal";
+    const Array3f sides = face_normals(before.V, before.F);
+    for (Eigen::Index f = 0; f < 12; ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int32_t v = mesh.F(f, k), source = before.F(f, k);
+            EXPECT_EQ(mesh.V.row(v), before.V.row(source));
+            EXPECT_EQ(mesh.scalars[0].values(v), float(source));
+            // Those of sides are multiples of one unit vector along an axis, normalised: exact.
+            EXPECT_EQ(mesh.N.row(v), source == 0 ? own : Eigen::RowVector3f(sides.row(f)));
+        }
+    EXPECT_EQ(mesh.scalars[1].values, before.scalars[1].values) << "those of faces stay";
 }
 
 TEST(Creases, OfAMeshAndItsChildrenWithoutNormals) {

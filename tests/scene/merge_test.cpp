@@ -8,6 +8,8 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/normals.h"
+#include "scene/cube_mesh.h"
 
 namespace easypbr::merge_test {
 namespace {
@@ -164,6 +166,53 @@ TEST(Merged, FillsInWhatOnlySomeHave) {
     EXPECT_EQ(both.scalars[0].values[3], 1);
 }
 
+MeshData triangle_with_normals() {
+    MeshData mesh = triangle();
+    mesh.N = Rows3(Vec3::UnitZ().transpose().replicate(3, 1));
+    return mesh;
+}
+
+TEST(Merged, MeshesWithoutNormalsKeepTheirSharpEdges) {
+    MeshData box = cube(), other = triangle_with_normals();
+    box.L = Array1i(Array1i::Dense::LinSpaced(12, 0, 11));
+    box.I = Array1f(Array1f::Dense::LinSpaced(8, 0, 7));
+    other.E = Array2i::Dense{{0, 2}};
+    const MeshData whole = merged(std::vector{box, other});
+    EXPECT_NO_THROW(validate(whole));
+    // Three normals at each corner of the cube: two more rows for each, behind those of both meshes.
+    ASSERT_EQ(whole.V.rows(), 8 + 3 + 16);
+    EXPECT_EQ(Rows3(whole.V.topRows(8)), Rows3(box.V));
+    EXPECT_EQ(Rows3(whole.V.middleRows(8, 3)), Rows3(other.V));
+    EXPECT_EQ(Array2i::Dense(whole.E), (Array2i::Dense{{8, 10}}));
+    EXPECT_EQ(Eigen::RowVector3i(whole.F.row(12)), Eigen::RowVector3i(8, 9, 10));
+    const Array3f sides = face_normals(box.V, box.F);
+    for (Eigen::Index f = 0; f < 12; ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int32_t v = whole.F(f, k), source = box.F(f, k);
+            // Multiples of one unit vector along an axis, normalised: exact.
+            EXPECT_EQ(Vec3(whole.N.row(v)), Vec3(sides.row(f)));
+            EXPECT_EQ(Vec3(whole.V.row(v)), Vec3(box.V.row(source)));
+            EXPECT_EQ(whole.I[v], float(source));
+            EXPECT_EQ(whole.source_vertex[v], whole.source_vertex[source]);
+        }
+    ASSERT_EQ(whole.L.rows(), 13) << "those of faces stay so";
+    EXPECT_EQ(whole.L[11], 11);
+    EXPECT_EQ(whole.L[12], no_label);
+    EXPECT_TRUE(merged(std::vector{box, triangle()}).N.empty()) << "none has normals: none needs them";
+}
+
+TEST(Merged, ValuesOfFacesStayThoseOfFaces) {
+    MeshData a = cube(), b = cube();
+    a.L = Array1i(Array1i::Dense::Constant(12, 1));
+    // Two cubes of 8 vertices and 12 faces, and 8 points: as many vertices as faces.
+    MeshData points;
+    points.V = Rows3(Rows3::Zero(8, 3));
+    const MeshData whole = merged(std::vector{a, b, points});
+    ASSERT_EQ(whole.F.rows(), 24);
+    EXPECT_EQ(whole.L.rows(), 24);
+    EXPECT_EQ(element_of(whole, 24), PerElement::face) << "24 vertices would take the labels for theirs";
+}
+
 TEST(Merged, PointsWithoutNormalsGetNone) {
     MeshData points;
     points.V = Rows3{{0, 0, 0}};
@@ -219,6 +268,28 @@ TEST(Flatten, BringsDescendantsIntoTheFrameOfTheParent) {
     EXPECT_EQ(flat.name, "root");
     const Mesh alone(triangle());
     EXPECT_EQ(flatten(alone).V.data(), alone.V().data()) << "nothing to move: the same array";
+}
+
+// A fold of 45 degrees is drawn smooth; the pose makes it one of atan(3) = 72 degrees.
+TEST(Flatten, EdgesAreAsSharpAsBeforeThePose) {
+    const float part = std::sqrt(0.5f);
+    MeshData fold;
+    fold.V = Rows3{{0, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {part, 0, -part}};
+    fold.F = Array3i::Dense{{0, 1, 2}, {0, 3, 1}};
+    Mesh root(fold);
+    root.set_T_parent_mesh(linear(Eigen::Vector3d(1, 1, 3).asDiagonal()));
+    root.add_child(Mesh(triangle_with_normals()));
+    EXPECT_EQ(flatten(root).V.rows(), 4 + 3);
+}
+
+TEST(Flatten, AShapeRepeatsNoVertices) {
+    Mesh root(cube());
+    root.add_child(Mesh(triangle_with_normals()));
+    EXPECT_EQ(flatten(root).V.rows(), 8 + 3 + 16);
+    const MeshData shape = flatten_shape(root);
+    EXPECT_EQ(shape.V.rows(), 8 + 3);
+    EXPECT_EQ(shape.F.rows(), 12 + 1);
+    EXPECT_TRUE(shape.N.empty());
 }
 
 // A pose holds what float32 cannot: 5,400,000.25 has spacings of half a metre there.

@@ -38,8 +38,8 @@ bool has_area(const MeshData& mesh) {
 
 SurfaceDistance surface_distance(const Mesh& from, const Mesh& to, int64_t samples, uint64_t seed) {
     geometry::require_between("surface distance: samples", samples, 0, std::numeric_limits<int32_t>::max());
-    const MeshData b = flatten(to);
-    MeshData a = flatten(from);
+    const MeshData b = flatten_shape(to);
+    MeshData a = flatten_shape(from);
     geometry::require_vertices("surface distance", a);
     a.V = positions_from(a, b.offset);
     a.offset = b.offset;

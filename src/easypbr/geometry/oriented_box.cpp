@@ -205,7 +205,7 @@ OrientedBox box_along(const BoxPoints& points, const Mat3d& axes) {
 }  // namespace
 
 OrientedBox oriented_bounding_box(const Mesh& mesh) {
-    const MeshData flat = flatten(mesh);
+    const MeshData flat = flatten_shape(mesh);
     geometry::require_vertices("oriented bounding box", flat);
     BoxPoints points = flat.V.cast<double>();
     const Eigen::RowVector3d mean = points.colwise().mean();

@@ -47,15 +47,13 @@ Mesh transformed(const Mesh& mesh, const Eigen::Affine3d& T) {
 
 Mesh merged(std::span<const Mesh> meshes) {
     if (meshes.empty()) throw ArgumentError("merge: expected at least one mesh, got none");
-    std::vector<MeshData> parts;
-    for (const Mesh& mesh : meshes) parts.push_back(flatten(mesh));
-    return Mesh(merged(std::span<const MeshData>(parts)));
+    return Mesh(flatten(meshes));
 }
 
 Box3d bounding_box(const Mesh& mesh, const Eigen::Affine3d& T_world_mesh) {
     Mesh placed = mesh.clone();
     placed.set_T_parent_mesh(T_world_mesh);
-    const MeshData flat = flatten(placed);
+    const MeshData flat = flatten_shape(placed);
     geometry::require_vertices("bounding box", flat);
     return {flat.V.colwise().minCoeff().transpose().cast<double>() + flat.offset,
             flat.V.colwise().maxCoeff().transpose().cast<double>() + flat.offset};

@@ -217,7 +217,7 @@ struct RayTree::Tree : geometry::TriangleTree {
     }
 };
 
-RayTree::RayTree(const Mesh& mesh) : RayTree(flatten(mesh)) {}
+RayTree::RayTree(const Mesh& mesh) : RayTree(flatten_shape(mesh)) {}
 
 RayTree::RayTree(const MeshData& mesh) {
     geometry::require_faces("rays", mesh);

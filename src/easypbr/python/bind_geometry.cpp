@@ -88,8 +88,8 @@ void bind_placing(MeshClass& mesh) {
             "A new mesh scaled about its origin, so that the longest side of its bounding box is `size`.")
         .def("merge", merge, nb::sig("def merge(self, *others: Mesh) -> Mesh"),
              "One new mesh of this and the others, children included, with their poses applied. Materials "
-             "and parts are kept; missing attributes are filled in: normals computed, white, labels -1, "
-             "scalars NaN, else 0.")
+             "and parts are kept; missing attributes are filled in: normals as they are drawn, white, "
+             "labels -1, scalars NaN, else 0.")
         .def("bounding_box", box_array, nb::arg("T_world_mesh").none() = nb::none(),
              nb::sig("def bounding_box(self, T_world_mesh: numpy.typing.ArrayLike | None = None) -> "
                      "numpy.ndarray"),

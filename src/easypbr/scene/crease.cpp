@@ -289,6 +289,42 @@ std::vector<int32_t> split_creases(MeshData& mesh, float crease_angle_deg) {
     return split_creases(mesh, find_creases(mesh, crease_angle_deg));
 }
 
+void add_drawn_normals(MeshData& mesh) {
+    const bool flat = mesh.style.flat.value_or(false);
+    const Creases creases = find_creases(mesh, flat ? 0 : automatic_crease_deg);
+    const Array4f tangents = mesh.uv_tangents;
+    split_creases(mesh, creases);
+    if (creases.empty()) mesh.uv_tangents = tangents;
+}
+
+void fill_normals(MeshData& mesh, float crease_angle_deg) {
+    const Array3f given = mesh.N;
+    const auto is_given = [&](int32_t vertex) { return !given.row(vertex).isZero(0); };
+    MeshData split;
+    split.V = mesh.V, split.F = mesh.F, split.source_vertex = mesh.source_vertex;
+    const std::vector<int32_t> rows = split_creases(split, crease_angle_deg);
+    // Of the rows after the split those that are kept, and the place of each.
+    std::vector<int32_t> kept, place;
+    for (int32_t i = 0; i < int32_t(rows.size()); ++i) {
+        const bool is_kept = i < given.rows() || !is_given(rows[size_t(i)]);
+        place.push_back(is_kept ? int32_t(kept.size()) : rows[size_t(i)]);
+        if (is_kept) kept.push_back(i);
+    }
+    Array3f::Dense N = rows_of(split.N, kept);
+    Array3i::Dense F = split.F;
+    for (Eigen::Index i = 0; i < F.size(); ++i) F.data()[i] = place[size_t(F.data()[i])];
+    for (size_t i = 0; i < kept.size(); ++i) {
+        kept[i] = rows[size_t(kept[i])];
+        if (is_given(kept[i])) N.row(Eigen::Index(i)) = given.row(kept[i]);
+    }
+    const FaceValues values(mesh);
+    if (kept.size() > size_t(given.rows())) repeat_vertices(kept, mesh);
+    mesh.uv_tangents = {};
+    mesh.F = std::move(F);
+    mesh.N = std::move(N);
+    values.put_back(mesh);
+}
+
 void split_creases(const Mesh& mesh, float crease_angle_deg) {
     const auto data = mesh.snapshot();
     if (!data->F.empty() && data->N.empty() && !data->style.flat.value_or(false))

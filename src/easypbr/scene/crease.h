@@ -40,7 +40,17 @@ std::vector<int32_t> split_creases(MeshData& mesh, const Creases& creases);
 /// The same with those that find_creases() finds.
 std::vector<int32_t> split_creases(MeshData& mesh, float crease_angle_deg);
 
-/// The same for a mesh and its children, where they have faces without normals that are not drawn flat.
+/// Gives a mesh with faces and without normals those that it is drawn with where no setting says otherwise,
+/// by the same split. For what is to look the same beside others that have normals, and in files. Tangents
+/// stay where nothing is split.
+void add_drawn_normals(MeshData& mesh);
+
+/// Gives the vertices whose normal is zero those of split_creases(). The others, which keep theirs, take part
+/// in the smooth surfaces, but are not split.
+void fill_normals(MeshData& mesh, float crease_angle_deg);
+
+/// split_creases() for a mesh and its children, where they have faces without normals that are not drawn
+/// flat.
 void split_creases(const Mesh& mesh, float crease_angle_deg);
 
 }  // namespace easypbr

@@ -13,8 +13,9 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/mesh.h"
-#include "easypbr/scene/normals.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/offset.h"
 
 namespace easypbr {
@@ -97,15 +98,15 @@ Array1i joined_sources(Meshes meshes, Array1i MeshData::*member, PerElement elem
     return result;
 }
 
-/// Labels or scalars: of the vertices or of the faces as in the first mesh that has them; `name` is for
-/// warnings.
+/// Labels or scalars: of the vertices or of the faces as in the first mesh that has them. Those of faces go
+/// to `of_faces`. `name` is for warnings.
 template <class A, class Of>
-A joined_either(Meshes meshes, const std::string& name, typename A::Scalar filler, Of&& of) {
+A joined_either(Meshes meshes, const std::string& name, typename A::Scalar filler, A& of_faces, Of&& of) {
     const auto first =
         std::find_if(meshes.begin(), meshes.end(), [&](const MeshData& mesh) { return !of(mesh).empty(); });
     if (first == meshes.end()) return {};
     const PerElement element = element_of(*first, of(*first).rows());
-    return joined<A>(meshes, element, filler, [&](const MeshData& mesh) -> A {
+    A values = joined<A>(meshes, element, filler, [&](const MeshData& mesh) -> A {
         const A values = of(mesh);
         if (values.empty() || values.rows() == rows_for(mesh, element)) return values;
         const bool of_vertices = element == PerElement::vertex;
@@ -114,22 +115,27 @@ A joined_either(Meshes meshes, const std::string& name, typename A::Scalar fille
                                 of_vertices ? "vertices" : "faces"));
         return {};
     });
+    if (element == PerElement::face) std::swap(values, of_faces);
+    return values;
 }
 
-std::vector<ScalarArray> joined_scalars(Meshes meshes) {
+std::vector<ScalarArray> joined_scalars(Meshes meshes, FaceValues& of_faces) {
     std::vector<std::string> names;
     for (const MeshData& mesh : meshes)
         for (const ScalarArray& scalar : mesh.scalars)
             if (std::find(names.begin(), names.end(), scalar.name) == names.end())
                 names.push_back(scalar.name);
     std::vector<ScalarArray> result;
-    for (const std::string& name : names)
-        result.push_back({name, joined_either<Array1f>(meshes, "scalars '" + name + "'", std::nanf(""),
-                                                       [&](const MeshData& mesh) -> Array1f {
-                                                           for (const ScalarArray& scalar : mesh.scalars)
-                                                               if (scalar.name == name) return scalar.values;
-                                                           return {};
-                                                       })});
+    for (const std::string& name : names) {
+        const auto of = [&](const MeshData& mesh) -> Array1f {
+            for (const ScalarArray& scalar : mesh.scalars)
+                if (scalar.name == name) return scalar.values;
+            return {};
+        };
+        Array1f& values = of_faces.scalars.emplace_back();
+        result.push_back(
+            {name, joined_either<Array1f>(meshes, "scalars '" + name + "'", std::nanf(""), values, of)});
+    }
     return result;
 }
 
@@ -143,15 +149,6 @@ std::shared_ptr<const LabelMap> first_label_map(Meshes meshes) {
                             meshes.front().name, found->name(), mesh.label_map->name()));
     }
     return found;
-}
-
-/// Each mesh's normals; computed where a mesh has faces only.
-Array3f joined_normals(Meshes meshes) {
-    const auto has_normals = [](const MeshData& mesh) { return !mesh.N.empty(); };
-    if (std::none_of(meshes.begin(), meshes.end(), has_normals)) return {};
-    return joined<Array3f>(meshes, PerElement::vertex, 0.0f, [&](const MeshData& mesh) {
-        return has_normals(mesh) || mesh.F.empty() ? mesh.N : smooth_normals(mesh);
-    });
 }
 
 /// Materials of several meshes, in their order: equal ones once.
@@ -243,6 +240,116 @@ bool all_have(Meshes meshes, Of&& of) {
                        [&](const MeshData& mesh) { return mesh.V.empty() || of(mesh); });
 }
 
+/// A mesh whose rows from `own` on repeat vertices at sharp edges.
+struct Part {
+    MeshData mesh;
+    Eigen::Index own;
+};
+
+Part as_it_is(const MeshData& mesh) {
+    return {mesh, mesh.V.rows()};
+}
+
+struct Parts {
+    std::vector<MeshData> meshes;
+    std::vector<Eigen::Index> own;
+
+    void add(Part part) {
+        meshes.push_back(std::move(part.mesh));
+        own.push_back(part.own);
+    }
+    Eigen::Index all_own() const { return std::accumulate(own.begin(), own.end(), Eigen::Index(0)); }
+};
+
+/// Puts the rows that repeat vertices behind those of all parts. Labels and scalars must be those of
+/// vertices.
+void put_repeated_last(MeshData& whole, const Parts& parts) {
+    if (parts.all_own() == whole.V.rows()) return;
+    std::vector<int32_t> rows, repeated;
+    int32_t row = 0;
+    for (size_t i = 0; i < parts.meshes.size(); ++i)
+        for (Eigen::Index k = 0; k < parts.meshes[i].V.rows(); ++k)
+            (k < parts.own[i] ? rows : repeated).push_back(row++);
+    rows.insert(rows.end(), repeated.begin(), repeated.end());
+    std::vector<int32_t> place(rows.size());
+    for (size_t i = 0; i < rows.size(); ++i) place[size_t(rows[i])] = int32_t(i);
+    const auto placed = [&](int32_t vertex) { return place[size_t(vertex)]; };
+    choose_vertex_rows(whole, rows);
+    whole.source_vertex = rows_of(whole.source_vertex, rows);
+    whole.F = whole.F.unaryExpr(placed);
+    whole.E = whole.E.unaryExpr(placed);
+}
+
+/// See merged(). Normals stay as they are.
+Part joined_parts(const Parts& parts) {
+    const Meshes meshes = parts.meshes;
+    if (meshes.empty()) return {};
+    if (meshes.size() == 1) return {meshes.front(), parts.own.front()};
+    MeshData whole;
+    whole.name = meshes.front().name;
+    whole.source = meshes.front().source;
+    whole.style = meshes.front().style;
+    whole.T_parent_mesh = meshes.front().T_parent_mesh;
+    whole.offset = meshes.front().offset;
+    whole.V = joined<Array3f>(meshes, PerElement::vertex, 0.0f,
+                              [&](const MeshData& mesh) { return positions_from(mesh, whole.offset); });
+    whole.N = joined(meshes, &MeshData::N, 0.0f);
+    whole.C = joined_colors(meshes);
+    whole.UV = joined(meshes, &MeshData::UV, 0.0f);
+    whole.uv_tangents = joined(meshes, &MeshData::uv_tangents, 0.0f);
+    if (all_have(meshes, [](const MeshData& mesh) { return !mesh.T.empty() && !mesh.B.empty(); })) {
+        whole.T = joined(meshes, &MeshData::T, 0.0f);
+        whole.B = joined(meshes, &MeshData::B, 0.0f);
+    }
+    if (all_have(meshes, [](const MeshData& mesh) { return !mesh.splats.empty(); }))
+        whole.splats = joined_splats(meshes);
+    whole.I = joined(meshes, &MeshData::I, 0.0f);
+    FaceValues of_faces;
+    whole.L = joined_either<Array1i>(meshes, "labels", no_label, of_faces.L,
+                                     [](const MeshData& mesh) { return mesh.L; });
+    whole.label_map = first_label_map(meshes);
+    whole.scalars = joined_scalars(meshes, of_faces);
+    for (Vec3d MeshData::*direction : {&MeshData::up, &MeshData::front}) {
+        const Vec3d first = meshes.front().*direction;
+        if (all_have(meshes, [&](const MeshData& mesh) { return mesh.*direction == first; }))
+            whole.*direction = first;
+    }
+    const float voxel_size = meshes.front().voxel_size;
+    if (all_have(meshes, [&](const MeshData& mesh) { return mesh.voxel_size == voxel_size; }))
+        whole.voxel_size = voxel_size;
+    total(meshes, PerElement::face);
+    whole.F = joined_indices(meshes, &MeshData::F);
+    whole.E = joined_indices(meshes, &MeshData::E);
+    whole.source_vertex = joined_sources(meshes, &MeshData::source_vertex, PerElement::vertex);
+    whole.source_face = joined_sources(meshes, &MeshData::source_face, PerElement::face);
+    join_parts(whole, meshes);
+    put_repeated_last(whole, parts);
+    of_faces.put_back(whole);
+    return {std::move(whole), parts.all_own()};
+}
+
+bool has_normals(const MeshData& mesh) {
+    return !mesh.N.empty();
+}
+
+/// What stands beside others that have normals.
+Part with_normals(const MeshData& mesh) {
+    Part part = as_it_is(mesh);
+    if (mesh.N.empty() && !mesh.F.empty()) add_drawn_normals(part.mesh);
+    return part;
+}
+
+/// Positions, faces and edges alone.
+Part bare_shape(const MeshData& mesh) {
+    MeshData shape;
+    shape.name = mesh.name;
+    shape.V = mesh.V;
+    shape.offset = mesh.offset;
+    shape.F = mesh.F;
+    shape.E = mesh.E;
+    return as_it_is(shape);
+}
+
 /// A node with vertices. T leads from its V to what is relative to the offset of the tree.
 struct PlacedNode {
     std::shared_ptr<const MeshData> data;
@@ -273,6 +380,35 @@ Vec3d shift_of(const std::vector<PlacedNode>& nodes) {
     });
 }
 
+bool tree_has_normals(const Mesh& mesh) {
+    bool has_some = false;
+    for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+        has_some = has_some || has_normals(*data);
+    });
+    return has_some;
+}
+
+/// `taken`: what is taken of each node, before poses distort its angles.
+Part flattened(const Mesh& mesh, Part (*taken)(const MeshData&)) {
+    const Vec3d base = offset_of_tree(mesh);
+    const std::vector<PlacedNode> placed = placed_nodes(mesh, base);
+    const Vec3d shift = shift_of(placed);
+    Parts nodes;
+    for (const PlacedNode& node : placed) {
+        Part part = taken(*node.data);
+        part.mesh = transformed(part.mesh, Eigen::Translation3d(-shift) * node.T);
+        part.mesh.offset = base + shift;
+        part.mesh.T_parent_mesh.setIdentity();
+        part.mesh.children.clear();
+        nodes.add(std::move(part));
+    }
+    Part whole = joined_parts(nodes);
+    const auto root = mesh.snapshot();
+    if (!root->up.isZero()) whole.mesh.up = root->T_parent_mesh.linear() * root->up;
+    whole.mesh.name = placed.size() == 1 ? placed.front().data->name : mesh.name();
+    return whole;
+}
+
 }  // namespace
 
 Array3f positions_from(const MeshData& mesh, const Vec3d& offset) {
@@ -282,45 +418,10 @@ Array3f positions_from(const MeshData& mesh, const Vec3d& offset) {
 }
 
 MeshData merged(Meshes meshes) {
-    if (meshes.empty()) return {};
-    if (meshes.size() == 1) return meshes.front();
-    MeshData whole;
-    whole.name = meshes.front().name;
-    whole.source = meshes.front().source;
-    whole.style = meshes.front().style;
-    whole.T_parent_mesh = meshes.front().T_parent_mesh;
-    whole.offset = meshes.front().offset;
-    whole.V = joined<Array3f>(meshes, PerElement::vertex, 0.0f,
-                              [&](const MeshData& mesh) { return positions_from(mesh, whole.offset); });
-    whole.N = joined_normals(meshes);
-    whole.C = joined_colors(meshes);
-    whole.UV = joined(meshes, &MeshData::UV, 0.0f);
-    whole.uv_tangents = joined(meshes, &MeshData::uv_tangents, 0.0f);
-    if (all_have(meshes, [](const MeshData& mesh) { return !mesh.T.empty() && !mesh.B.empty(); })) {
-        whole.T = joined(meshes, &MeshData::T, 0.0f);
-        whole.B = joined(meshes, &MeshData::B, 0.0f);
-    }
-    if (all_have(meshes, [](const MeshData& mesh) { return !mesh.splats.empty(); }))
-        whole.splats = joined_splats(meshes);
-    whole.I = joined(meshes, &MeshData::I, 0.0f);
-    whole.L = joined_either<Array1i>(meshes, "labels", no_label, [](const MeshData& mesh) { return mesh.L; });
-    whole.label_map = first_label_map(meshes);
-    whole.scalars = joined_scalars(meshes);
-    for (Vec3d MeshData::*direction : {&MeshData::up, &MeshData::front}) {
-        const Vec3d first = meshes.front().*direction;
-        if (all_have(meshes, [&](const MeshData& mesh) { return mesh.*direction == first; }))
-            whole.*direction = first;
-    }
-    const float voxel_size = meshes.front().voxel_size;
-    if (all_have(meshes, [&](const MeshData& mesh) { return mesh.voxel_size == voxel_size; }))
-        whole.voxel_size = voxel_size;
-    total(meshes, PerElement::face);
-    whole.F = joined_indices(meshes, &MeshData::F);
-    whole.E = joined_indices(meshes, &MeshData::E);
-    whole.source_vertex = joined_sources(meshes, &MeshData::source_vertex, PerElement::vertex);
-    whole.source_face = joined_sources(meshes, &MeshData::source_face, PerElement::face);
-    join_parts(whole, meshes);
-    return whole;
+    const bool some_have_normals = std::ranges::any_of(meshes, has_normals);
+    Parts parts;
+    for (const MeshData& mesh : meshes) parts.add(some_have_normals ? with_normals(mesh) : as_it_is(mesh));
+    return joined_parts(parts).mesh;
 }
 
 Vec3d offset_of_tree(const Mesh& mesh) {
@@ -331,22 +432,19 @@ Vec3d offset_of_tree(const Mesh& mesh) {
     return first.value_or(Vec3d::Zero());
 }
 
+MeshData flatten(std::span<const Mesh> meshes) {
+    const bool some_have_normals = std::ranges::any_of(meshes, tree_has_normals);
+    Parts trees;
+    for (const Mesh& mesh : meshes) trees.add(flattened(mesh, some_have_normals ? with_normals : as_it_is));
+    return joined_parts(trees).mesh;
+}
+
 MeshData flatten(const Mesh& mesh) {
-    const Vec3d base = offset_of_tree(mesh);
-    const std::vector<PlacedNode> placed = placed_nodes(mesh, base);
-    const Vec3d shift = shift_of(placed);
-    std::vector<MeshData> nodes;
-    for (const PlacedNode& node : placed) {
-        nodes.push_back(transformed(*node.data, Eigen::Translation3d(-shift) * node.T));
-        nodes.back().offset = base + shift;
-        nodes.back().T_parent_mesh.setIdentity();
-        nodes.back().children.clear();
-    }
-    MeshData whole = merged(nodes);
-    const auto root = mesh.snapshot();
-    if (!root->up.isZero()) whole.up = root->T_parent_mesh.linear() * root->up;
-    whole.name = nodes.size() == 1 ? nodes.front().name : mesh.name();
-    return whole;
+    return flatten(std::span(&mesh, 1));
+}
+
+MeshData flatten_shape(const Mesh& mesh) {
+    return flattened(mesh, bare_shape).mesh;
 }
 
 }  // namespace easypbr
