@@ -6,8 +6,10 @@
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/normals.h"
 #include "io/gltf_decoded.h"
 #include "io/temporary_folder.h"
+#include "scene/cube_mesh.h"
 #include "test_data.h"
 
 namespace easypbr::glb_test {
@@ -109,6 +111,29 @@ TEST(Glb, RoundTripsGeometry) {
     // v is turned over twice (exact for these), colours pass through the transfer function twice in float.
     EXPECT_EQ(read.UV, data.UV);
     EXPECT_LT((read.C - data.C).cwiseAbs().maxCoeff(), 1e-6f);
+}
+
+TEST(Glb, SharpEdgesOfAMeshWithoutNormalsStay) {
+    MeshData data = cube();
+    data.I = Array1f(Array1f::Dense::LinSpaced(8, 0, 7));
+    data.E = Array2i::Dense{{0, 7}};
+    const MeshData read = first_child(round_trip(Mesh(data)).mesh);
+    ASSERT_EQ(read.V.rows(), 6 * 4) << "four for each side";
+    const Array3f sides = face_normals(data.V, data.F);
+    for (Eigen::Index f = 0; f < 12; ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int32_t v = read.F(f, k), source = data.F(f, k);
+            EXPECT_EQ(Vec3(read.V.row(v)), Vec3(data.V.row(source)));
+            // Multiples of one unit vector along an axis, normalised: exact.
+            EXPECT_EQ(Vec3(read.N.row(v)), Vec3(sides.row(f)));
+            EXPECT_EQ(read.I[v], float(source));
+        }
+    EXPECT_EQ(read.E, data.E);
+    // What is drawn flat has none in the file, and is so again.
+    data.style.flat = true;
+    const MeshData flat = first_child(round_trip(Mesh(data)).mesh);
+    EXPECT_EQ(flat.V.rows(), 8);
+    EXPECT_TRUE(flat.style.flat.value_or(false));
 }
 
 TEST(Glb, RoundTripsPartsAndMaterials) {

@@ -76,16 +76,17 @@ TEST(MeshFiles, ChildrenAreMergedInWorldSpace) {
     }
 }
 
-// Two faces at a right angle along an edge whose vertices the texture coordinates split: the normals of both
-// sides lie halfway between those of the faces.
+// Two faces along an edge whose vertices the texture coordinates split. At 53 degrees the normals of both
+// sides lie halfway between those of the faces, (0, 0, 1) and (0, 0.8, 0.6); at a right angle each side has
+// its own.
 TEST(MeshFiles, SeamsOfTextureCoordinatesStaySmooth) {
     const TemporaryFolder folder;
     MeshData mesh;
-    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
+    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, -0.6f, 0.8f}});
     mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {3, 5, 4}});
     mesh.UV = Array2f(Array2f::Dense{{0, 0}, {1, 0}, {0, 1}, {0.5f, 0}, {1, 1}, {0, 0}});
     mesh.source_vertex = Array1i(Array1i::Dense{{0}, {1}, {2}, {0}, {1}, {3}});
-    const Vec3 halfway = Vec3(0, 1, 1).normalized();
+    const Vec3 halfway = Vec3(0, 0.8f, 1.6f).normalized();
     for (const char* name : {"m.obj", "m.ply", "m.npz"}) {
         Mesh(mesh).save(folder / name);
         const auto back = Mesh(folder / name).snapshot();
@@ -94,6 +95,17 @@ TEST(MeshFiles, SeamsOfTextureCoordinatesStaySmooth) {
             // The angles of corners, which are the weights, are approximated to 1e-5: two may differ by twice
             // that.
             EXPECT_LT((Vec3(back->N.row(corner)) - halfway).norm(), 2e-5f) << name << " " << corner;
+    }
+    MeshData sharp = mesh;
+    sharp.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
+    for (const char* name : {"m.obj", "m.ply", "m.npz"}) {
+        Mesh(sharp).save(folder / name);
+        const auto back = Mesh(folder / name).snapshot();
+        ASSERT_EQ(back->N.rows(), 6) << name;
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_EQ(Vec3(back->N.row(back->F(0, k))), Vec3(0, 0, 1)) << name;
+            EXPECT_EQ(Vec3(back->N.row(back->F(1, k))), Vec3(0, 1, 0)) << name;
+        }
     }
     // Without seams files need no normals.
     mesh.source_vertex = Array1i(Array1i::Dense{{0}, {1}, {2}, {3}, {4}, {5}});

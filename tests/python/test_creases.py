@@ -69,3 +69,54 @@ def test_a_mesh_that_deforms_keeps_its_sharp_edges():
     # At most three sides are seen, each with one normal: 0, 89.4, 178.9 and 200 parts of 200 are none that rounding
     # takes to two numbers when the encoding is off by 1e-4.
     assert len(np.unique(np.rint(seen * 200), axis=0)) <= 3
+
+
+def seen(what) -> np.ndarray:
+    return render(what, size=(96, 72), samples=1, camera={"position": (2, 1.5, 3), "target": (0, 0, 0)}).astype(int)
+
+
+def meshes_without_normals() -> dict[str, Mesh]:
+    ball = easypbr.shapes.icosphere(0.5, 2)
+    V, F = np.array(ball.V), np.array(ball.F)
+    turned = F.copy()
+    turned[::3] = turned[::3, ::-1]
+    return {
+        "box": Mesh(*turned_box()),
+        "turned": Mesh(V, turned),
+        "doubled": Mesh(V, np.concatenate([F, F[:, ::-1]])),
+    }
+
+
+# Positions and normals are written as they are drawn: colours differ by rounding alone.
+ROUNDING = 2
+
+
+@pytest.mark.parametrize("name", ["box", "turned", "doubled"])
+@pytest.mark.parametrize("ending", ["glb", "ply", "obj", "npz"])
+def test_files_of_meshes_without_normals_look_as_the_meshes(name, ending, tmp_path):
+    mesh = meshes_without_normals()[name]
+    mesh.save(tmp_path / f"a.{ending}")
+    assert abs(seen(mesh) - seen(tmp_path / f"a.{ending}")).max() <= ROUNDING
+
+
+@pytest.mark.parametrize("name", ["box", "turned", "doubled"])
+def test_meshes_without_normals_merged_with_others_look_as_before(name, tmp_path):
+    mesh = meshes_without_normals()[name]
+    hidden = easypbr.shapes.sphere(0.01)
+    both = mesh.merge(hidden)
+    np.testing.assert_array_equal(both.V[: len(mesh.V)], mesh.V)
+    wanted = seen(mesh)
+    assert abs(wanted - seen(both)).max() <= ROUNDING
+    easypbr.as_mesh([mesh, hidden]).save(tmp_path / "both.ply")
+    assert abs(wanted - seen(tmp_path / "both.ply")).max() <= ROUNDING
+
+
+@pytest.mark.parametrize("ending", ["glb", "ply", "obj", "npz"])
+def test_seams_of_textures_keep_sharp_edges_in_files(ending, tmp_path):
+    V = [[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    lines = [f"v {x} {y} {z}" for x, y, z in V] + ["vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1"]
+    lines += ["f " + " ".join(f"{v + 1}/{k + 1}" for k, v in enumerate(quad)) for quad in quads]
+    (tmp_path / "seams.obj").write_text("\n".join(lines) + "\n")
+    Mesh(tmp_path / "seams.obj").save(tmp_path / f"out.{ending}")
+    assert abs(seen(tmp_path / "seams.obj") - seen(tmp_path / f"out.{ending}")).max() <= ROUNDING

@@ -23,8 +23,8 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/io/tables/vertex_rows.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/merge.h"
-#include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
 namespace {
@@ -163,14 +163,14 @@ bool has_split_vertices(const MeshData& mesh) {
 }
 
 /// The mesh as one node, for a format that has no hierarchy. Files do not say which vertices count as one for
-/// smooth normals (source_vertex): where some do, the normals are written. Texture transforms that a format
-/// does not have become part of the texture coordinates.
+/// smooth normals (source_vertex): where some do, the normals that are drawn are written. Texture transforms
+/// that a format does not have become part of the texture coordinates.
 MeshData flattened_for(const std::string& extension, const Mesh& mesh) {
     MeshData flat = flatten(mesh);
     const bool has_faces = extension == "obj" || extension == "ply" || extension == "npz";
     if (has_faces && flat.N.empty() && !flat.F.empty() && !flat.style.flat.value_or(false) &&
         has_split_vertices(flat))
-        flat.N = smooth_normals(flat);
+        add_drawn_normals(flat);
     if (const TextureMapping* mapping = texture_mapping(flat, extension)) bake_uv_transforms(*mapping, flat);
     return flat;
 }

@@ -10,9 +10,9 @@
 #include "easypbr/io/mesh/gltf/glb_textures.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
+#include "easypbr/scene/crease.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/mesh.h"
-#include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
 namespace {
@@ -82,7 +82,9 @@ class GlbBuilder {
         return content_.json["nodes"].size() - 1;
     }
 
-    size_t add_mesh(const MeshData& data) {
+    size_t add_mesh(MeshData data) {
+        // A reader shades a file without normals flat.
+        if (data.N.empty() && !data.F.empty() && !data.style.flat.value_or(false)) add_drawn_normals(data);
         OrderedJson attributes = add_attributes(data);
         OrderedJson primitives = OrderedJson::array();
         if (!data.F.empty()) add_parts(data, attributes, primitives);
@@ -150,17 +152,14 @@ class GlbBuilder {
         const Vec3 least = data.V.colwise().minCoeff(), most = data.V.colwise().maxCoeff();
         position["min"] = {least[0], least[1], least[2]};
         position["max"] = {most[0], most[1], most[2]};
-        // A reader shades a file without normals flat.
-        const bool smooth = data.N.empty() && !data.F.empty() && !data.style.flat.value_or(false);
-        const Array3f N = smooth ? smooth_normals(data) : data.N;
-        if (!N.empty()) attributes["NORMAL"] = add_floats(N.data(), size_t(N.rows()), 3);
+        if (!data.N.empty()) attributes["NORMAL"] = add_floats(data.N.data(), size_t(data.N.rows()), 3);
         if (!data.UV.empty()) {
             Array2f::Dense UV = data.UV;
             UV.col(1).array() = 1 - UV.col(1).array();
             attributes["TEXCOORD_0"] = add_floats(UV.data(), size_t(UV.rows()), 2);
         }
         // The format has no vertices without a tangent beside others.
-        if (!N.empty() && !data.uv_tangents.empty() &&
+        if (!data.N.empty() && !data.uv_tangents.empty() &&
             (data.uv_tangents.col(3).cwiseAbs().array() == 1).all())
             attributes["TANGENT"] = add_floats(data.uv_tangents.data(), size_t(data.V.rows()), 4);
         if (!data.C.empty()) {
