@@ -291,7 +291,7 @@ TEST(Fuzz, Obj) {
         "mtllib gone.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\nusemtl a\nf "
         "1/1/1 2/2/1 3/1/1 4/2/1\n"
         "usemtl b\nf -1//-1 -2//-1 \\\n -3//-1\nf 1 2 3\nl 1 2 -1\n",
-        [](const io::Source& source) { validate(io::read_obj(source)); });
+        [](const io::Source& source) { validate(io::read_obj(source, {})); });
 }
 
 TEST(Fuzz, Mtl) {

@@ -7,6 +7,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/scene/mesh.h"
 #include "io/temporary_folder.h"
@@ -16,7 +17,7 @@ namespace easypbr::obj_test {
 namespace {
 
 MeshData read(const std::string& text, const fs::path& path = "test.obj") {
-    MeshData mesh = io::read_obj(io::Source(std::string_view(text), path));
+    MeshData mesh = io::read_obj(io::Source(std::string_view(text), path), {});
     validate(mesh);
     return mesh;
 }
@@ -103,6 +104,20 @@ TEST(Obj, ComputesNormalsThatOnlySomeFacesLack) {
     ASSERT_EQ(mesh.N.rows(), 6);
     EXPECT_EQ(mesh.N(mesh.F(0, 0), 2), -1) << "the file's own normal is kept although it points back";
     EXPECT_EQ(Vec3(mesh.N.row(mesh.F(1, 0))), Vec3(0, 0, 1));
+}
+
+// A fold of 90 degrees, of which the second face has no normals; the third, which has some, stays whole.
+TEST(Obj, ComputedNormalsHaveSharpEdges) {
+    const std::string text =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nvn 0 0 -1\n"
+        "f 1 2 3\nf 1 4 2\nf 1//1 5//1 2//1\n";
+    const MeshData mesh = read(text);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(Vec3(mesh.N.row(mesh.F(0, k))), Vec3(0, 0, 1)) << k;
+        EXPECT_EQ(Vec3(mesh.N.row(mesh.F(1, k))), Vec3(0, 1, 0)) << k;
+        EXPECT_EQ(Vec3(mesh.N.row(mesh.F(2, k))), Vec3(0, 0, -1)) << k;
+    }
+    EXPECT_EQ(mesh.V.rows(), 5 + 2 + 2) << "the edge in three normals";
 }
 
 TEST(Obj, SortsFacesByMaterialInOrderOfUse) {

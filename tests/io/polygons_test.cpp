@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/tables/ear_clipping.h"
 
@@ -207,9 +208,9 @@ TEST(Polygons, AllReadersCutThem) {
         "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
         rows + face;
-    for (const MeshData& mesh :
-         {read_obj(Source(std::string_view(obj), "u.obj")), read_off(Source(std::string_view(off), "u.off")),
-          read_ply(Source(std::string_view(ply), "u.ply"))}) {
+    for (const MeshData& mesh : {read_obj(Source(std::string_view(obj), "u.obj"), {}),
+                                 read_off(Source(std::string_view(off), "u.off")),
+                                 read_ply(Source(std::string_view(ply), "u.ply"))}) {
         EXPECT_EQ(sum(doubled_areas(mesh)), 14);
         EXPECT_GE(least(doubled_areas(mesh)), 0);
         EXPECT_TRUE((mesh.source_face.array() == 0).all());

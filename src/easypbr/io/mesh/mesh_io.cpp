@@ -59,7 +59,7 @@ MeshData read_pts(const Source& source, const LoadOptions&) {
 /// The readers of formats that hold a single mesh.
 const std::map<std::string, Reader>& readers() {
     static const std::map<std::string, Reader> all{{"ply", without_options(read_ply)},
-                                                   {"obj", without_options(read_obj)},
+                                                   {"obj", read_obj},
                                                    {"stl", read_stl},
                                                    {"off", without_options(read_off)},
                                                    {"pcd", without_options(read_pcd)},

@@ -15,7 +15,7 @@ struct LoadOptions;
 
 /// Each throws FormatError as load_scene() does. The result passes validate() and has no name yet.
 MeshData read_ply(const Source& source);
-MeshData read_obj(const Source& source);
+MeshData read_obj(const Source& source, const LoadOptions& options);
 MeshData read_stl(const Source& source, const LoadOptions& options);
 MeshData read_off(const Source& source);
 

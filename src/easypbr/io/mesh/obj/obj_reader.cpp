@@ -10,13 +10,14 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/obj/mtl_reader.h"
 #include "easypbr/io/mesh/obj/obj_chunk.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/attributes.h"
 #include "easypbr/scene/color_range.h"
-#include "easypbr/scene/normals.h"
+#include "easypbr/scene/crease.h"
 
 namespace easypbr::io {
 namespace {
@@ -75,8 +76,11 @@ std::vector<size_t> offsets(const std::vector<ObjChunk>& chunks, Count count) {
 /// Joins the chunks of one file.
 class ObjReader {
   public:
-    explicit ObjReader(const Source& source)
-        : source_(source), offset_(choose_obj_offset(source)), chunks_(parse_chunks(source, offset_)) {}
+    ObjReader(const Source& source, float crease_angle_deg)
+        : source_(source),
+          crease_angle_deg_(crease_angle_deg),
+          offset_(choose_obj_offset(source)),
+          chunks_(parse_chunks(source, offset_)) {}
 
     MeshData read() {
         join_vertices();
@@ -348,15 +352,13 @@ class ObjReader {
     /// Vertices of faces without normals in a file that has some get computed ones.
     void fill_missing_normals() {
         if (N_.size() == 0) return;
-        if ((N_.rowwise().squaredNorm().array() == 0).any()) {
-            const Array3f computed = smooth_normals(mesh_);
-            for (Eigen::Index i = 0; i < N_.rows(); ++i)
-                if (N_.row(i).isZero(0)) N_.row(i) = computed.row(i);
-        }
+        const bool some_are_missing = (N_.rowwise().squaredNorm().array() == 0).any();
         mesh_.N = std::move(N_);
+        if (some_are_missing) fill_normals(mesh_, crease_angle_deg_);
     }
 
     const Source& source_;
+    const float crease_angle_deg_;
     const Vec3d offset_;
     std::vector<ObjChunk> chunks_;
     std::array<std::vector<size_t>, 3> vertex_begin_;
@@ -374,10 +376,10 @@ class ObjReader {
 
 }  // namespace
 
-MeshData read_obj(const Source& source) {
+MeshData read_obj(const Source& source, const LoadOptions& options) {
     if (source.bytes.empty()) fail(source, "the file is empty");
     const TextSource text(source);
-    return ObjReader(text.source()).read();
+    return ObjReader(text.source(), options.crease_angle_deg.value_or(automatic_crease_deg)).read();
 }
 
 }  // namespace easypbr::io
