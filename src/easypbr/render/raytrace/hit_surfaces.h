@@ -1,6 +1,8 @@
 // Surfaces that rays have met, with an array for each number.
 #pragma once
 
+#include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -26,6 +28,23 @@ struct HitSurfaces {
 
 /// `footprint`: width of the ray there, world units.
 native::ElementHit native_hit(const RayHit& hit, float footprint);
+
+/// The numbers of `count` hits, those of a surface together, in order within it; `surface_of`:
+/// RayHit::surface.
+template <class SurfaceOf>
+std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
+    const auto place_of = [&](size_t i) { return size_t(int64_t(surface_of(i)) + 1); };
+    std::vector<uint32_t> begins;
+    for (size_t i = 0; i < count; ++i) {
+        const size_t after = place_of(i) + 1;
+        if (begins.size() <= after) begins.resize(after + 1);
+        ++begins[after];
+    }
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    std::vector<uint32_t> sorted(count);
+    for (size_t i = 0; i < count; ++i) sorted[begins[place_of(i)]++] = uint32_t(i);
+    return sorted;
+}
 
 /// Evaluates the surfaces of hits, which are sorted by RayHit::surface; `surfaces` holds that of each.
 HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "easypbr/core/luminance.h"
 #include "easypbr/render/frame/inverse_tone.h"
@@ -48,22 +47,6 @@ bool is_lit_kind(float code) {
 
 bool is_unlit_kind(float code) {
     return code > code_of(SurfaceKind::unlit) - 0.1f;
-}
-
-/// The numbers below `count`, those of a surface together, in order within it. Surfaces are -1 or more.
-template <class SurfaceOf>
-std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
-    const auto place_of = [&](size_t i) { return size_t(int64_t(surface_of(i)) + 1); };
-    std::vector<uint32_t> begins;
-    for (size_t i = 0; i < count; ++i) {
-        const size_t after = place_of(i) + 1;
-        if (begins.size() <= after) begins.resize(after + 1);
-        ++begins[after];
-    }
-    std::partial_sum(begins.begin(), begins.end(), begins.begin());
-    std::vector<uint32_t> sorted(count);
-    for (size_t i = 0; i < count; ++i) sorted[begins[place_of(i)]++] = uint32_t(i);
-    return sorted;
 }
 
 }  // namespace
