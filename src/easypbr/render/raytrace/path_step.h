@@ -60,6 +60,7 @@ struct PathTracer::Escaped {
         Vec3 throughput;
         uint32_t index;
         Scattering scattered;
+        bool by_both = true;  ///< next-event estimation may have found the same light
     };
     void add(const Vec3& direction, float density, const Path& path) {
         directions.push_back(direction);

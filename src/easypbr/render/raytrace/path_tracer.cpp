@@ -32,6 +32,7 @@ constexpr float widest_density = 4;
 constexpr float narrow_light = 40;
 /// Cosine between a face and a lamp's direction from which on down rays to the lamp start above the face.
 constexpr float terminator = 0.1f;
+constexpr float unlimited = std::numeric_limits<float>::infinity();
 /// Of directions that are the only ones.
 constexpr float only_direction = 1e30f;
 
@@ -114,9 +115,10 @@ Vec3 PathTracer::start_to_lamp(const PathBatch& batch, size_t path, const Vec3& 
 void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const {
     const std::vector<SkySampler::Sample> skies = sky_.seen(paths.directions, paths.densities);
     for (size_t i = 0; i < skies.size(); ++i) {
-        const float density = paths.densities[i];
-        const float weight = density / (density + (1 - emitter_part_) * skies[i].density);
         const Escaped::Path& path = paths.paths[i];
+        const float density = paths.densities[i],
+                    chosen = path.by_both ? (1 - emitter_part_) * skies[i].density : 0;
+        const float weight = density / (density + chosen);
         add(path.index, path.throughput.cwiseProduct(skies[i].radiance * weight), path.scattered, radiance);
     }
 }
@@ -136,11 +138,7 @@ void PathTracer::add_caught(const Caught& caught, uint32_t depth, PathRadiance& 
     Escaped open;
     for (size_t i = 0; i < blocked.size(); ++i)
         if (!blocked[i]) open.add(caught.paths, i);
-    const std::vector<SkySampler::Sample> skies = sky_.seen(open.directions, open.densities);
-    for (size_t i = 0; i < skies.size(); ++i) {
-        const Escaped::Path& path = open.paths[i];
-        add(path.index, path.throughput.cwiseProduct(skies[i].radiance), path.scattered, radiance);
-    }
+    add_escaped(open, radiance);
 }
 
 std::vector<float> PathTracer::emission_weights(std::span<const Hit> hits) const {
@@ -222,7 +220,30 @@ void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight
     for (size_t i = 0; i < rays.size(); ++i) light[paths[i]] += lamps[paths[i]].light.cwiseProduct(left[i]);
 }
 
-void PathTracer::add_chosen(const PathBatch& batch, const Scattered& scattered,
+bool PathTracer::sees_sky_in_ground(Scattering scattered) const {
+    return !background_ || scattered == Scattering::wide;
+}
+
+RaySegment PathTracer::upwards(const Vec3& position, const PathState& state, uint32_t depth) const {
+    const Vec3 up = scene_->ground()->up.cast<float>();
+    const Vec2 u = state.sampler.pair(depth, emitter_point);
+    return {RayScene::off_surface(position, up), cosine_direction(RayFrame(up), u), unlimited};
+}
+
+bool PathTracer::arrives(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
+                         float distance) const {
+    const Vec3 from = start_towards(batch, path, direction);
+    const float to_ground = scene_->ground_distance(from, direction);
+    if (!(to_ground < distance)) return !scene_->blocked(from, direction, distance, Transmissive::met);
+    const PathState& state = batch.state[path];
+    const bool is_sky = std::isinf(distance) && scene_->ground()->shadow_catcher;
+    if (!is_sky || !sees_sky_in_ground(state.scattered)) return false;
+    if (scene_->blocked(from, direction, to_ground, Transmissive::met)) return false;
+    const RaySegment ray = upwards(from + direction * to_ground, state, depth);
+    return !scene_->blocked(ray.from, ray.direction, ray.distance);
+}
+
+void PathTracer::add_chosen(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
                             std::vector<Vec3>& light) const {
     for (size_t i = 0; i < batch.count; ++i) {
         const Vec3 chosen = scattered.chosen_light.at(i);
@@ -232,17 +253,15 @@ void PathTracer::add_chosen(const PathBatch& batch, const Scattered& scattered,
         // Where a background of one colour is seen through surfaces there is no sky.
         const bool seen_through = !batch.state[i].reflected && batch.passes(i, direction);
         if (background_ && seen_through && std::isinf(distance)) continue;
-        if (distance <= 0 ||
-            !scene_->blocked(start_towards(batch, i, direction), direction, distance, Transmissive::met))
-            light[i] += chosen;
+        if (distance <= 0 || arrives(batch, i, depth, direction, distance)) light[i] += chosen;
     }
 }
 
-void PathTracer::add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
+void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
                             const Scattered& scattered, PathRadiance& radiance) const {
     std::vector<Vec3> light(batch.count, Vec3::Zero());
     add_lamps(batch, lamps, light);
-    add_chosen(batch, scattered, light);
+    add_chosen(batch, depth, scattered, light);
     const auto add_to = [&](const PathState& state, const Vec3& of_it) {
         add(state.index, state.throughput.cwiseProduct(of_it), state.scattered, radiance);
     };
@@ -304,7 +323,7 @@ Vec3 PathTracer::part_before_color(const PathBatch& batch, size_t path, const Sc
                                    const PathState& state) const {
     if (!background_) return Vec3::Zero();
     if (!state.reflected) return Vec3::Ones();
-    if (batch.state[path].scattered == Scattering::wide) return Vec3::Zero();
+    if (sees_sky_in_ground(batch.state[path].scattered)) return Vec3::Zero();
     // The diffuse lobe has no more than this of the weight: what specular lobes take of it is not known here.
     const float metallic = batch.parameters.at(path).x(),
                 transmission = batch.extensions ? batch.extensions->volume.at(path).x() : 0.0f,
@@ -327,11 +346,8 @@ void PathTracer::note_caught(const PathBatch& batch, size_t path, uint32_t depth
     }
     const Vec3 left = hit.state.throughput.cwiseProduct(Vec3::Ones() - part);
     if (!(left.maxCoeff() > 0)) return;
-    const Vec2 u = hit.state.sampler.pair(depth, emitter_point);
-    to.upwards.push_back({RayScene::off_surface(hit.hit.position, hit.hit.normal),
-                          cosine_direction(RayFrame(hit.hit.normal), u),
-                          std::numeric_limits<float>::infinity()});
-    to.paths.add(hit.direction, hit.density, {left, hit.state.index, before});
+    to.upwards.push_back(upwards(hit.hit.position, hit.state, depth));
+    to.paths.add(hit.direction, hit.density, {left, hit.state.index, before, sees_sky_in_ground(before)});
 }
 
 void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
@@ -449,7 +465,7 @@ void PathTracer::step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
     lights_.choose(batch, depth, false, lamps);
     Scattered scattered(PathBatch::rounded_up(batch.count));
     scatter(batch, depth, scattered);
-    add_direct(batch, lamps, scattered, radiance);
+    add_direct(batch, depth, lamps, scattered, radiance);
     if (batch.extensions) add_emission(batch, scattered, radiance);
     follow(batch, depth, scattered, hits, radiance);
 }

@@ -61,12 +61,23 @@ class PathTracer {
     void scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const;
     /// Chooses the direction of next-event estimation for each path: to the sky, or to an emissive surface.
     void choose_directions(const PathBatch& batch, uint32_t depth, Scattered& to) const;
-    void add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps, const Scattered& scattered,
-                    PathRadiance& radiance) const;
+    void add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
+                    const Scattered& scattered, PathRadiance& radiance) const;
     /// The parts of that: of the lamps, and of the directions of next-event estimation.
     void add_lamps(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
                    std::vector<Vec3>& light) const;
-    void add_chosen(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& light) const;
+    void add_chosen(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
+                    std::vector<Vec3>& light) const;
+    /// Whether light from a direction of next-event estimation, that far away, reaches a path. The ground
+    /// hides what is below; one that catches shadows shows the sky where it is open.
+    bool arrives(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
+                 float distance) const;
+    /// Whether paths that were scattered so see the sky alone in a ground that catches shadows. Where they
+    /// see a background of one colour, too, sampled directions alone find what is left of the sky: there the
+    /// lobes are known apart.
+    bool sees_sky_in_ground(Scattering scattered) const;
+    /// A ray that looks whether such a ground is open to the sky where a path has met it.
+    RaySegment upwards(const Vec3& position, const PathState& state, uint32_t depth) const;
     /// What surfaces with extensions emit.
     void add_emission(const PathBatch& batch, const Scattered& scattered, PathRadiance& radiance) const;
     /// Follows the paths to the next surface.

@@ -139,6 +139,8 @@ class RayScene {
     /// opposite to the direction.
     std::optional<RayHit> trace(const Vec3& from, const Vec3& direction,
                                 Transmissive transmissive = Transmissive::passed) const;
+    /// Distance to the ground; infinity where it is not met.
+    float ground_distance(const Vec3& from, const Vec3& direction) const;
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;
@@ -182,7 +184,7 @@ class RayScene {
     /// The surface at a place that is seen along `view`; none where its edges are rounded away.
     std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint,
                                  Transmissive transmissive) const;
-    /// Whether any caster lies nearer than `distance` (RayScene::unit()).
+    /// Whether any caster lies nearer than `distance` (RayScene::unit()). The ground is none.
     bool blocked(const Vec3& from, const Vec3& direction, float distance,
                  Transmissive transmissive = Transmissive::passed) const;
     /// The same of many rays, 1 where one is blocked. Nothing blocks those of no length or less.
@@ -195,9 +197,6 @@ class RayScene {
     struct Scene;
     std::optional<RayHit> first_hit(const RaySegment& ray, Transmissive transmissive,
                                     bool meets_gaussians) const;
-    /// Distance to the ground; infinity where it is not met.
-    float ground_distance(const Vec3& from, const Vec3& direction) const;
-
     void place_ground();
     /// What is seen where no surface is found.
     Seen nothing_at(const Place& place) const {

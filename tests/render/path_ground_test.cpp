@@ -1,0 +1,133 @@
+// What path traced surfaces get of the sky below a ground, against closed forms.
+#include <cmath>
+
+#include "render_test.h"
+
+namespace easypbr::path_ground_test {
+namespace {
+
+constexpr int size = 16;
+constexpr double height = 20;  ///< of the wall above the ground, of which it hides less than 0.001 of the sky
+
+/// Black above, and of this radiance in the cone of half this angle around the direction down.
+Environment light_from_below(float radiance, double cone) {
+    constexpr int rows = 64;
+    Image image(2 * rows, rows, 3, PixelType::f32);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < 2 * rows; ++x)
+            std::fill_n(image.at<float>(x, y), 3, pi * (y + 0.5) / rows > pi - cone ? radiance : 0.0f);
+    return Environment(image);
+}
+
+/// On a vertical wall that reflects everything evenly: the light's cosine, divided by pi, over the cone.
+double light_on_wall(double radiance, double cone) {
+    return radiance / pi * (cone - std::sin(cone) * std::cos(cone));
+}
+
+Material surface(float metallic, float roughness) {
+    Material m;
+    m.base_color = Vec3::Ones();
+    m.metallic = metallic;
+    m.roughness = roughness;
+    return m;
+}
+
+app::Session session_of_wall(const Material& material, const Environment& sky, GroundMode mode) {
+    Scene scene;
+    scene.show(facing_square(1, material), "wall");
+    scene.set_environment(sky);
+    app::Session session = plain_session(scene, size);
+    Settings& s = session.settings();
+    s.path.enabled = true;
+    s.path.clamp = 0;
+    s.path.denoise = Denoising::off;
+    s.shadows.enabled = true;
+    s.environment.enabled = true;
+    s.shading.dielectric_f0 = 0;
+    s.ground.mode = mode;
+    s.ground.height = -height;
+    s.ground.plane_color = Vec3::Zero();
+    s.ground.radius = 1e6f;  // a plane is open by 1e-4 of a right angle above its edge
+    look_from(session, Vec3d(0, 0, 5), 10);
+    return session;
+}
+
+double mean_of(app::Session& session, int samples) {
+    const Image image = render_linear(session, samples);
+    double sum = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) sum += double(image.at<float>(x, y)[0]);
+    return sum / (size * size);
+}
+
+// A black plane hides all that is below the horizon. 1e-3: what comes past its edge.
+TEST(PathGround, APlaneHidesTheSkyBelow) {
+    for (const float metallic : {0.0f, 1.0f}) {
+        const Material material = surface(metallic, metallic > 0 ? 0.6f : 1.0f);
+        app::Session session = session_of_wall(material, light_from_below(1, pi / 2), GroundMode::plane);
+        EXPECT_NEAR(mean_of(session, 16), 0, 1e-3) << metallic;
+    }
+}
+
+// A plane hides what shines below it. Nothing comes past the lamp's edge to the camera's place.
+TEST(PathGround, APlaneHidesEmittersBelow) {
+    for (const bool hidden : {false, true}) {
+        app::Session session = session_of_wall(surface(0, 1), constant_environment(0), GroundMode::plane);
+        Material lamp;
+        lamp.base_color = Vec3::Zero();
+        lamp.emissive = Vec3::Ones();
+        Mesh plate = make_box(Vec3(4, 0.1f, 4));
+        plate.set_material(lamp);
+        plate.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, -4, 0)));
+        session.scene().show(plate, "lamp");
+        session.settings().ground.height = hidden ? -2.0 : -6.0;
+        if (hidden)
+            EXPECT_EQ(mean_of(session, 4), 0);
+        else
+            EXPECT_GT(mean_of(session, 4), 0.02);
+    }
+}
+
+// A catcher shows the sky below to matt surfaces, once, before all backgrounds. Of the half below the horizon
+// half arrives at a wall. 0.015: three deviations of 256 samples in 256 pixels that the cosine distributes,
+// of which 0.0125 find a cone of the radiance 10.
+TEST(PathGround, ACatcherShowsTheSkyBelowOnce) {
+    EXPECT_NEAR(light_on_wall(1, pi / 2), 0.5, 1e-12);
+    for (const double cone : {pi / 2, pi / 8})
+        for (const BackgroundMode background : {BackgroundMode::transparent, BackgroundMode::color}) {
+            const float radiance = cone < 1 ? 10 : 1;
+            app::Session session =
+                session_of_wall(surface(0, 1), light_from_below(radiance, cone), GroundMode::shadow);
+            session.settings().background.mode = background;
+            session.settings().background.color = Vec3::Zero();
+            EXPECT_NEAR(mean_of(session, 256), light_on_wall(double(radiance), cone), 0.015)
+                << cone << ", " << int(background);
+        }
+}
+
+// Specular lobes find it likewise: the same as without a ground, but for 0.001 and twice the noise of a
+// metal's lobe, which is narrower than the cosine.
+TEST(PathGround, MetalsSeeTheSkyBelowACatcherOnce) {
+    const auto seen = [](GroundMode mode) {
+        app::Session session = session_of_wall(surface(1, 0.6f), light_from_below(1, pi / 2), mode);
+        return mean_of(session, 64);
+    };
+    const double open = seen(GroundMode::none);
+    EXPECT_GT(open, 0.3);
+    EXPECT_NEAR(seen(GroundMode::shadow), open, 0.015);
+}
+
+// White disappears in an even sky with a bright spot below, whose directions are chosen: the spot adds its
+// light alone. 0.015: as above.
+TEST(PathGround, WhiteIsWhiteAboveACatcher) {
+    Image image(128, 64, 3, PixelType::f32);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 128; ++x) std::fill_n(image.at<float>(x, y), 3, y < 56 ? 1.0f : 11.0f);
+    for (const GroundMode mode : {GroundMode::none, GroundMode::shadow}) {
+        app::Session session = session_of_wall(surface(0, 1), Environment(image), mode);
+        EXPECT_NEAR(mean_of(session, 256), 1 + light_on_wall(10, pi / 8), 0.015) << int(mode);
+    }
+}
+
+}  // namespace
+}  // namespace easypbr::path_ground_test
