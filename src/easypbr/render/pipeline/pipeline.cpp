@@ -1,6 +1,7 @@
 #include "easypbr/render/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "easypbr/core/color.h"
@@ -27,12 +28,13 @@ std::string lit_by_driver(bool native_shading) {
 
 RayGround ray_ground(const ResolvedSettings& resolved) {
     const auto& ground = resolved.settings.ground;
+    const bool catches = GroundPass::is_shadow_catcher(resolved);
     return {.up = parse_up(resolved.settings.camera.up),
             .height = ground.height,
-            .radius = double(ground.radius),
+            .radius = catches ? std::numeric_limits<double>::infinity() : double(ground.radius),
             .color = linear_from_srgb(ground.plane_color),
             .roughness = ground.plane_roughness,
-            .shadow_catcher = GroundPass::is_shadow_catcher(resolved)};
+            .shadow_catcher = catches};
 }
 
 }  // namespace

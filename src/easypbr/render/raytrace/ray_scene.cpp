@@ -17,6 +17,8 @@ namespace easypbr::render {
 namespace {
 
 constexpr float endless = std::numeric_limits<float>::infinity();
+/// An endless ground ends there, RayScene::unit(): single precision holds squares of places on it.
+constexpr double farthest = 1e6;
 
 /// Of length 1, and on the side that a ray in this direction comes from.
 Vec3 towards_start(const Vec3& normal, const Vec3& direction) {
@@ -213,7 +215,7 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
 void RayScene::place_ground() {
     if (!ground_) return;
     plane_ = {ground_->up.cast<float>(), float((ground_->height - ground_->up.dot(centre_)) / unit_),
-              float(ground_->radius / unit_)};
+              float(std::min(ground_->radius / unit_, farthest))};
 }
 
 void RayScene::make_surfaces(const ResolvedSettings& resolved) {

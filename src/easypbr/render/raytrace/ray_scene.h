@@ -18,7 +18,7 @@ namespace easypbr::render {
 struct RayGround {
     Vec3d up{0, 1, 0};
     double height = 0;    ///< along `up`
-    double radius = 1;    ///< around the casters' centre; beyond it there is none
+    double radius = 1;    ///< around the casters' centre; beyond it there is none; infinity: endless
     Vec3 color{0, 0, 0};  ///< linear
     float roughness = 1;
     bool shadow_catcher =
