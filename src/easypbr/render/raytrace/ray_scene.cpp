@@ -25,6 +25,17 @@ Vec3 towards_start(const Vec3& normal, const Vec3& direction) {
     return normal.normalized() * (normal.dot(direction) > 0 ? -1.0f : 1.0f);
 }
 
+/// Of the ground's radius; as in shaders/ground_finish.frag.
+constexpr float fades_from = 0.4f;
+
+/// Whether a ray passes a ground that fades, by a hash, at this part of its radius.
+bool passes_faded(const Vec3& from, const Vec3& direction, float part) {
+    RTCRay ray;
+    put_ray(from, direction, endless, ray);
+    const float t = (part - fades_from) / (1 - fades_from);
+    return hash_of(ray, ~0u) < t * t * (3 - 2 * t);
+}
+
 /// What a place that comes from a pixel may be off by.
 float rounding_at(const Vec3& place) {
     return 1e-4f * std::max(1.0f, place.norm());
@@ -299,14 +310,15 @@ Vec3 RayScene::off_surface(const Vec3& at, const Vec3& away, const Vec3& reach) 
     return at + away * rounding(at.norm()) + reach;
 }
 
-float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
-    constexpr float none = std::numeric_limits<float>::infinity();
-    if (!ground_) return none;
+float RayScene::ground_distance(const Vec3& from, const Vec3& direction, bool fades) const {
+    if (!ground_) return endless;
     const Vec3& up = plane_.up;
     const float above = up.dot(from) - plane_.height, falls = -up.dot(direction);
-    if (above <= 0 || falls <= 0) return none;
+    if (above <= 0 || falls <= 0) return endless;
     const Vec3 at = from + direction * (above / falls);
-    return (at - up * up.dot(at)).squaredNorm() < plane_.radius * plane_.radius ? above / falls : none;
+    const float part = (at - up * up.dot(at)).norm() / plane_.radius;
+    if (!(part < 1)) return endless;
+    return fades && part > fades_from && passes_faded(from, direction, part) ? endless : above / falls;
 }
 
 std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
@@ -315,14 +327,14 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
 }
 
 std::optional<RayHit> RayScene::first_hit(const RaySegment& ray, Transmissive transmissive,
-                                          bool meets_gaussians) const {
+                                          bool by_chance) const {
     const Vec3 &from = ray.from, &direction = ray.direction;
-    const float to_ground = ground_distance(from, direction);
+    const float to_ground = ground_distance(from, direction, by_chance);
     RTCRayHit found;
     put_ray(from, direction, std::min(to_ground, ray.distance), found.ray);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
-    query.meets_gaussians = meets_gaussians;
+    query.meets_gaussians = by_chance;
     if (scene_) embree::intersect(scene_->tree.get(), query.context, found);
     RayHit hit;
     hit.distance = found.ray.tfar;
@@ -421,7 +433,7 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
         for (size_t i = 0; i < count; ++i) {
             const Place place = places.at(first + i);
             const RaySegment& ray = segments[i];
-            const float to_ground = ground_distance(ray.from, ray.direction);
+            const float to_ground = ground_distance(ray.from, ray.direction, false);
             if (to_ground < rays.ray.tfar[i])
                 put(first + i, seen_by(place, ray, to_ground, plane_.up, {}));
             else if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)

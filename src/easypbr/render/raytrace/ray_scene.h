@@ -18,7 +18,7 @@ namespace easypbr::render {
 struct RayGround {
     Vec3d up{0, 1, 0};
     double height = 0;    ///< along `up`
-    double radius = 1;    ///< around the casters' centre; beyond it there is none; infinity: endless
+    double radius = 1;    ///< around the casters' centre; it fades towards it; infinity: endless
     Vec3 color{0, 0, 0};  ///< linear
     float roughness = 1;
     bool shadow_catcher =
@@ -139,8 +139,10 @@ class RayScene {
     /// opposite to the direction.
     std::optional<RayHit> trace(const Vec3& from, const Vec3& direction,
                                 Transmissive transmissive = Transmissive::passed) const;
-    /// Distance to the ground; infinity where it is not met.
-    float ground_distance(const Vec3& from, const Vec3& direction) const;
+    /// Distance to the ground; infinity where it is not met, or passed where it fades, by a hash of the ray.
+    float ground_distance(const Vec3& from, const Vec3& direction) const {
+        return ground_distance(from, direction, true);
+    }
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;
@@ -195,8 +197,9 @@ class RayScene {
 
   private:
     struct Scene;
-    std::optional<RayHit> first_hit(const RaySegment& ray, Transmissive transmissive,
-                                    bool meets_gaussians) const;
+    /// `by_chance`: with Gaussians, and a ground that fades, which stop a part of the rays.
+    std::optional<RayHit> first_hit(const RaySegment& ray, Transmissive transmissive, bool by_chance) const;
+    float ground_distance(const Vec3& from, const Vec3& direction, bool fades) const;
     void place_ground();
     /// What is seen where no surface is found.
     Seen nothing_at(const Place& place) const {
