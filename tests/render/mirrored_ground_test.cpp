@@ -68,6 +68,20 @@ TEST(MirroredGround, IsTheBackgroundUnderACatcher) {
         }
 }
 
+// From below there is no ground: the sky of radiance 3 is mirrored. 0.015: as above, of 3.
+TEST(MirroredGround, IsNotSeenFromBelow) {
+    for (const bool native : {true, false}) {
+        Scene scene = scene_of_ball(metal(0));
+        scene.set_environment(constant_environment(3));
+        app::Session session = session_on_ground(scene, GroundMode::shadow);
+        session.settings().environment.enabled = true;
+        session.settings().camera.position = Vec3d(0, -4.6, 1);
+        session.settings().camera.target = Vec3d(0, 0, 0);
+        session.allow_native_geometry(native);
+        expect_near(mean_of(session), Vec3::Constant(3), 0.015, native ? "native" : "driver");
+    }
+}
+
 // Of the sun behind the ball that it hides from the place, and of one that it does not hide.
 TEST(MirroredGround, ShowsTheShadowOnIt) {
     for (const bool native : {true, false})

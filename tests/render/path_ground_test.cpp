@@ -69,7 +69,7 @@ TEST(PathGround, APlaneHidesTheSkyBelow) {
     }
 }
 
-// A plane hides what shines below it. Nothing comes past the lamp's edge to the camera's place.
+// A plane hides what shines below it. Else a plate of 4 x 2 before the wall, 4 below it, sends 0.035.
 TEST(PathGround, APlaneHidesEmittersBelow) {
     for (const bool hidden : {false, true}) {
         app::Session session = session_of_wall(surface(0, 1), constant_environment(0), GroundMode::plane);
@@ -80,6 +80,7 @@ TEST(PathGround, APlaneHidesEmittersBelow) {
         plate.set_material(lamp);
         plate.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, -4, 0)));
         session.scene().show(plate, "lamp");
+        session.settings().environment.enabled = false;
         session.settings().ground.height = hidden ? -2.0 : -6.0;
         if (hidden)
             EXPECT_EQ(mean_of(session, 4), 0);
@@ -154,6 +155,37 @@ TEST(PathGround, APlaneFades) {
     s.camera.target = Vec3d(0, -0.25882, 0);
     s.camera.fov_y_deg = 0.5f;
     EXPECT_NEAR(mean_of(session, 64), 0.5, 0.02);
+}
+
+// Close above a ground that is seen from below, a surface is as it is without one: white in an even sky,
+// traced in both ways. 0.02: colours of 16 bits and lights of half precision.
+TEST(PathGround, FromBelowThereIsNone) {
+    for (const GroundMode mode : {GroundMode::shadow, GroundMode::plane})
+        for (const Projection projection : {Projection::perspective, Projection::orthographic})
+            for (const bool paths : {true, false}) {
+                Scene scene;
+                Mesh square = facing_square(1, surface(0, 1));
+                square.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())));
+                scene.show(square, "bottom");
+                scene.set_environment(constant_environment(1));
+                app::Session session = plain_session(scene, size);
+                Settings& s = session.settings();
+                s.path.enabled = paths;
+                s.path.denoise = Denoising::off;
+                s.rays.enabled = !paths;
+                s.ssao.enabled = !paths;
+                s.shadows.enabled = true;
+                s.environment.enabled = true;
+                s.shading.dielectric_f0 = 0;
+                s.ground.mode = mode;
+                s.ground.height = -0.01;
+                s.ground.plane_color = Vec3::Zero();
+                s.camera.projection = projection;
+                s.camera.ortho_height = 0.5;
+                look_from(session, Vec3d(0, -5, 1), 5);
+                EXPECT_NEAR(mean_of(session, 16), 1, 0.02)
+                    << int(mode) << ", " << int(projection) << ", " << paths;
+            }
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
 
 void Pipeline::update_ray_scene(const Frame& frame, const DrawList& casters, bool ground) {
     std::optional<RayGround> plane;
-    if (ground) plane = ray_ground(*frame.resolved);
+    if (ground && GroundPass::is_seen(frame)) plane = ray_ground(*frame.resolved);
     ray_scene_.update(casters, shadow_maps_.caster_bounds(), shadow_maps_.casters_generation(), primitives_,
                       plane);
 }

@@ -15,6 +15,8 @@ namespace {
 
 /// An orthographic view along the ground would see it without end.
 constexpr double widest_radii = 30;
+/// Orthographic views along the ground are from above, whatever roundings make of them.
+constexpr double along = 1e-9;
 
 struct Plane {
     Vec3d up;
@@ -24,12 +26,6 @@ struct Plane {
 Plane plane_of(const Camera& camera, const ResolvedSettings& resolved) {
     const Vec3d up = parse_up(resolved.settings.camera.up);
     return {up, resolved.settings.ground.height - up.dot(camera.position())};
-}
-
-/// Whether a camera sees a plane's upper side.
-bool is_above(const Frame& frame, const Plane& plane) {
-    const Vec3d forward = -frame.camera.T_world_cam.linear().col(2);
-    return frame.orthographic() ? plane.up.dot(forward) < 0 : plane.offset < 0;
 }
 
 Vec4 as_uniform(const Plane& plane) {
@@ -48,13 +44,13 @@ Vec4 middle_of(const Frame& frame, const Plane& plane, const Box3d& bounds) {
 }  // namespace
 
 std::optional<MirroredGround> GroundPass::mirrored(const Frame& frame, const Box3d& bounds) {
+    if (!is_seen(frame)) return std::nullopt;
     const ResolvedSettings& resolved = *frame.resolved;
     const auto& ground = resolved.settings.ground;
     const bool catches = is_shadow_catcher(resolved);
     const std::optional<Vec3> background = background_radiance(resolved);
     if (catches && !background) return std::nullopt;
     const Plane plane = plane_of(frame.camera, resolved);
-    if (!is_above(frame, plane)) return std::nullopt;
     // Within the content a floor of its own hides the catcher.
     if (catches && bounds.contains(frame.camera.position())) return std::nullopt;
     const auto sky = [&](const Vec3d& normal) -> Vec3 {
@@ -80,6 +76,13 @@ bool GroundPass::is_on(const ResolvedSettings& resolved) {
 
 bool GroundPass::is_shadow_catcher(const ResolvedSettings& resolved) {
     return is_on(resolved) && resolved.settings.ground.mode == GroundMode::shadow;
+}
+
+bool GroundPass::is_seen(const Frame& frame) {
+    const Plane plane = plane_of(frame.camera, *frame.resolved);
+    if (!frame.orthographic()) return plane.offset < 0;
+    const Vec3d forward = -frame.camera.T_world_cam.linear().col(2);
+    return plane.up.dot(forward) < along;
 }
 
 void GroundPass::widen_depth(Camera& camera, const ResolvedSettings& resolved, const Box3d& bounds) {
@@ -160,9 +163,9 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
 }
 
 void GroundPass::shade(const Frame& frame, const GBuffer& targets) {
+    if (!is_seen(frame)) return;
     const auto& ground = frame.resolved->settings.ground;
     const Plane plane = plane_of(frame.camera, *frame.resolved);
-    if (!is_above(frame, plane)) return;
     // Where the plane is in clip coordinates, the depth of its points follows from x and y.
     const Mat4d clip_from_world = frame.clip_from_view * frame.camera.view();
     const Eigen::Vector4d own(plane.up.x(), plane.up.y(), plane.up.z(), -ground.height);

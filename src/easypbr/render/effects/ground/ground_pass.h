@@ -25,10 +25,14 @@ class GroundPass {
     static bool is_on(const ResolvedSettings& resolved);
     static bool is_shadow_catcher(const ResolvedSettings& resolved);
 
+    /// Whether a frame's camera is on the side from which the ground is seen. From the other side nothing is
+    /// there: surfaces are lit and reflect as without it.
+    static bool is_seen(const Frame& frame);
+
     /// An orthographic camera whose depth holds all of the ground that is in the picture, as far as 30 radii.
     static void widen_depth(Camera& camera, const ResolvedSettings& resolved, const Box3d& bounds);
 
-    /// None below the ground, for a catcher before anything but a background of one colour, and for one that
+    /// None where the ground is not seen, for a catcher before anything but a background of one colour, and for one that
     /// the camera sees from within the content. `bounds`: of the content.
     static std::optional<MirroredGround> mirrored(const Frame& frame, const Box3d& bounds);
 
