@@ -39,6 +39,17 @@ inline void put_ray(const Vec3& from, const Vec3& direction, float farthest, RTC
     ray.id = ray.flags = 0;
 }
 
+/// Whether a ray passes a ground that fades at this part of its radius, as in shaders/ground_finish.frag: by
+/// a hash.
+inline bool passes_ground(const Vec3& from, const Vec3& direction, float part) {
+    constexpr float fades_from = 0.4f;
+    if (part < fades_from) return false;
+    RTCRay ray;
+    put_ray(from, direction, std::numeric_limits<float>::infinity(), ray);
+    const float t = (part - fades_from) / (1 - fades_from);
+    return hash_of(ray, ~0u) < t * t * (3 - 2 * t);
+}
+
 /// What a filter needs to know.
 struct RayElement {
     const DrawItem* item = nullptr;

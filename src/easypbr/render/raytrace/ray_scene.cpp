@@ -18,22 +18,11 @@ namespace {
 
 constexpr float endless = std::numeric_limits<float>::infinity();
 /// An endless ground ends there, RayScene::unit(): single precision holds squares of places on it.
-constexpr double farthest = 1e6;
+constexpr double ground_end = 1e6;
 
 /// Of length 1, and on the side that a ray in this direction comes from.
 Vec3 towards_start(const Vec3& normal, const Vec3& direction) {
     return normal.normalized() * (normal.dot(direction) > 0 ? -1.0f : 1.0f);
-}
-
-/// Of the ground's radius; as in shaders/ground_finish.frag.
-constexpr float fades_from = 0.4f;
-
-/// Whether a ray passes a ground that fades, by a hash, at this part of its radius.
-bool passes_faded(const Vec3& from, const Vec3& direction, float part) {
-    RTCRay ray;
-    put_ray(from, direction, endless, ray);
-    const float t = (part - fades_from) / (1 - fades_from);
-    return hash_of(ray, ~0u) < t * t * (3 - 2 * t);
 }
 
 /// What a place that comes from a pixel may be off by.
@@ -226,7 +215,7 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
 void RayScene::place_ground() {
     if (!ground_) return;
     plane_ = {ground_->up.cast<float>(), float((ground_->height - ground_->up.dot(centre_)) / unit_),
-              float(std::min(ground_->radius / unit_, farthest))};
+              float(std::min(ground_->radius / unit_, ground_end))};
 }
 
 void RayScene::make_surfaces(const ResolvedSettings& resolved) {
@@ -318,7 +307,7 @@ float RayScene::ground_distance(const Vec3& from, const Vec3& direction, bool fa
     const Vec3 at = from + direction * (above / falls);
     const float part = (at - up * up.dot(at)).norm() / plane_.radius;
     if (!(part < 1)) return endless;
-    return fades && part > fades_from && passes_faded(from, direction, part) ? endless : above / falls;
+    return fades && passes_ground(from, direction, part) ? endless : above / falls;
 }
 
 std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
