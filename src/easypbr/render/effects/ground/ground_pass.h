@@ -32,8 +32,8 @@ class GroundPass {
     /// An orthographic camera whose depth holds all of the ground that is in the picture, as far as 30 radii.
     static void widen_depth(Camera& camera, const ResolvedSettings& resolved, const Box3d& bounds);
 
-    /// None where the ground is not seen, for a catcher before anything but a background of one colour, and for one that
-    /// the camera sees from within the content. `bounds`: of the content.
+    /// None where the ground is not seen, for a catcher before anything but a background of one colour, and
+    /// for one that the camera sees from within the content. `bounds`: of the content.
     static std::optional<MirroredGround> mirrored(const Frame& frame, const Box3d& bounds);
 
     /// Writes the plane into the G-buffer where it is nearer than what is there.
