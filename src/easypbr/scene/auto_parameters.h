@@ -47,10 +47,14 @@ void fill(Auto<T>& setting, const T& inferred) {
         setting.latch(inferred);
 }
 
-/// The world axis that points up, as a setting says it: what the formats of the content's files say; else the
-/// axis of the ground that it clearly stands on; else "+y". The same for content of the same arrays and
-/// poses.
+/// The world axis that points up, as a setting says it: what the formats of the content's files say; else +z
+/// of a height field; else the axis of the ground that the content clearly stands on; else "+y". The same for
+/// content of the same arrays and poses.
 std::string inferred_up(const SceneSnapshot& scene);
+
+/// Whether content is clearly a height field z = f(x, y) over a rectangle: vertices on a regular grid, or
+/// faces of one side that cover the rectangle once.
+bool is_height_field(const SceneSnapshot& scene);
 
 /// Where an automatic camera stands around the content, as camera.azimuth_deg and elevation_deg say it.
 struct ViewAngles {

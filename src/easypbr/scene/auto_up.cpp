@@ -339,8 +339,9 @@ bool stands(const AxisEvidence& axis) {
     return peak < end_slabs && axis.mass_below(peak) <= stray;
 }
 
-/// z = f(x, y) over a rectangle, without gaps along z: sheets one behind the other are none.
-bool is_height_field(const UpEvidence& evidence) {
+/// Thin along z over a rectangle, without gaps along z: sheets one behind the other are none. Tells height
+/// fields of points that are on no grid.
+bool is_thin_layer(const UpEvidence& evidence) {
     constexpr double least_thin = 0.9, most_thin_beside = 0.5, least_filled = 0.95;
     const AxisEvidence &x = evidence[0], &y = evidence[1], &z = evidence[2];
     const auto empty_slabs = std::ranges::count(z.mass, 0.0);
@@ -402,11 +403,12 @@ std::string up_of_formats(const SceneSnapshot& scene) {
 
 std::string inferred_up(const SceneSnapshot& scene) {
     if (const std::string agreed = up_of_formats(scene); !agreed.empty()) return agreed;
+    if (is_height_field(scene)) return "+z";
     const bool has_faces = std::ranges::any_of(
         scene.objects, [](const SceneSnapshot::Object& object) { return !object.mesh->F.empty(); });
     const auto evidence = evidence_of(sampled(scene, has_faces), has_faces);
     if (!evidence) return "+y";
-    if (is_height_field(*evidence)) return "+z";
+    if (is_thin_layer(*evidence)) return "+z";
     return has_faces ? up_of_mesh(*evidence) : up_of_cloud(*evidence);
 }
 
