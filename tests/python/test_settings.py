@@ -209,6 +209,26 @@ def test_up_is_inferred_and_pinned():
         view.settings.camera.up = "north"
 
 
+@pytest.mark.parametrize("scale, offset", [
+    ((1, 1, 1), (0, 0, 0)), ((1, 1, 2000), (11, 48, 500)), ((15_000, 9_000, 100), (691_000, 5_335_000, 520)),
+])
+@pytest.mark.parametrize("count", [10, 60, 100])
+def test_height_fields_have_z_up(count, scale, offset):
+    """The points of a grid and the mesh of them, with and without holes."""
+    x, y = np.meshgrid(*[np.linspace(-1, 1, count)] * 2)
+    i = np.arange(count * count).reshape(count, count)
+    quads = np.stack([i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]], -1).reshape(-1, 4)
+    gone = np.random.default_rng(1).random((count, count)) < 0.05
+    for z in (np.sinc(4 * np.hypot(x, y)), 0.3 * np.sin(4 * x), x * y):
+        points = np.stack([x, y, z], -1) * scale + offset
+        holes = np.where(gone[..., None], np.nan, points)
+        for shown in (points, holes, (points.reshape(-1, 3), quads),
+                      (points.reshape(-1, 3), quads[~gone.ravel()[quads].any(1)])):
+            scene = Scene()
+            scene.show(easypbr.as_mesh(shown), "field")
+            assert Viewer((32, 24), scene=scene).settings.resolve("camera.up") == "+z"
+
+
 def test_presets(size, tmp_path):
     ball = shapes.sphere(segments=16)
     white, red = (255, 255, 255, 255), (255, 0, 0, 255)

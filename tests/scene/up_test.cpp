@@ -1,6 +1,7 @@
 // The inferred up axis: of content that stands on something level, of formats that define it, else +y.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -99,12 +100,11 @@ namespace {
 
 /// z = f(x, y) over [-1, 1]^2 as a mesh of quads, but those of which a corner is not a number.
 template <class Height>
-Mesh height_field(Height&& f) {
-    constexpr int n = 80;
+Mesh height_field(Height&& f, int n = 80) {
     Array3f::Dense V(n * n, 3);
     std::vector<std::array<int, 3>> faces;
     for (int i = 0; i < n * n; ++i) {
-        const float x = float(i % n) * 2 / (n - 1) - 1, y = float(i / n) * 2 / (n - 1) - 1;
+        const float x = float(i % n) * 2 / float(n - 1) - 1, y = float(i / n) * 2 / float(n - 1) - 1;
         V.row(i) << x, y, f(x, y);
     }
     for (int i = 0; i < n * (n - 1); ++i)
@@ -136,6 +136,140 @@ TEST(Up, OfAHeightFieldIsZ) {
         EXPECT_EQ(up_of(y_up(mesh)), "+y");
         EXPECT_EQ(up_of(cloud(y_up(mesh).V())), "+y");
     }
+}
+
+namespace {
+
+/// The corners of the faces as a cloud.
+Mesh corners_of(const Mesh& mesh) {
+    std::vector<bool> used(size_t(mesh.V().rows()));
+    for (Eigen::Index i = 0; i < mesh.F().size(); ++i) used[size_t(mesh.F()(i / 3, i % 3))] = true;
+    Array3f::Dense V(Eigen::Index(std::ranges::count(used, true)), 3);
+    Eigen::Index row = 0;
+    for (size_t i = 0; i < used.size(); ++i)
+        if (used[i]) V.row(row++) = mesh.V().row(Eigen::Index(i));
+    return cloud(V);
+}
+
+/// Each vertex at what `place` makes of it.
+template <class Place>
+Mesh placed(const Mesh& mesh, Place&& place) {
+    Array3f::Dense V = mesh.V();
+    for (auto row : V.rowwise()) row = place(Vec3(row.transpose())).transpose().eval();
+    return Mesh(Array3f(V), mesh.F());
+}
+
+Mesh scaled(const Mesh& mesh, const Vec3& factors) {
+    return placed(mesh, [&](const Vec3& p) { return Vec3(p.cwiseProduct(factors)); });
+}
+
+/// As MATLAB has it, over [-3, 3]^2 there.
+float peaks(float u, float v) {
+    const float x = 3 * u, y = 3 * v;
+    return 3 * (1 - x) * (1 - x) * std::exp(-x * x - (y + 1) * (y + 1)) -
+           10 * (x / 5 - x * x * x - std::pow(y, 5.0f)) * std::exp(-x * x - y * y) -
+           std::exp(-(x + 1) * (x + 1) - y * y) / 3;
+}
+
+float sinc(float x, float y) {
+    const float r = 4 * float(pi) * std::hypot(x, y);
+    return r > 0 ? std::sin(r) / r : 1;
+}
+
+float waves_along_x(float x, float) {
+    return 0.3f * std::sin(4 * x);
+}
+
+float slope(float x, float) {
+    return std::exp(x);
+}
+
+}  // namespace
+
+TEST(Up, OfAHeightFieldIsZAtAnyScale) {
+    for (const int n : {10, 100})
+        for (auto* f : {peaks, sinc, waves_along_x, slope})
+            for (const Vec3& factors :
+                 {Vec3(1, 1, 1), Vec3(3, 3, 1), Vec3(1, 1, 2000), Vec3(5000, 9000, 20)}) {
+                const Mesh mesh = scaled(height_field(f, n), factors);
+                EXPECT_EQ(up_of(mesh), "+z") << n << ", " << factors.transpose();
+                EXPECT_EQ(up_of(cloud(mesh.V())), "+z") << n << ", " << factors.transpose();
+                EXPECT_EQ(up_of(y_up(mesh)), "+y") << n << ", " << factors.transpose();
+                EXPECT_EQ(up_of(cloud(y_up(mesh).V())), "+y") << n << ", " << factors.transpose();
+            }
+}
+
+TEST(Up, OfAHeightFieldIsZWithHoles) {
+    for (const int n : {10, 100}) {
+        std::mt19937 random(1);
+        const Mesh mesh = height_field(
+            [&](float x, float y) { return random() % 20 == 0 ? std::nanf("") : peaks(x, y); }, n);
+        EXPECT_EQ(up_of(mesh), "+z") << n;
+        EXPECT_EQ(up_of(corners_of(mesh)), "+z") << n;
+    }
+}
+
+TEST(Up, OfAHeightFieldIsZFarFromZero) {
+    Mesh mesh = scaled(height_field(peaks), {5000, 5000, 20});
+    mesh.edit([](MeshData& data) { data.offset = {691'000, 5'335'000, 520}; });
+    EXPECT_EQ(up_of(mesh), "+z");
+}
+
+// 90,000 points and 178,802 faces: more than are judged.
+TEST(Up, OfALargeHeightFieldIsZ) {
+    const Mesh mesh = height_field(peaks, 300);
+    EXPECT_EQ(up_of(mesh), "+z");
+    EXPECT_EQ(up_of(cloud(mesh.V())), "+z");
+    std::mt19937 random(1);
+    const Mesh noise = height_field([&](float, float) { return float(random() % 1024) / 1024; }, 300);
+    EXPECT_EQ(up_of(cloud(noise.V())), "+z");
+}
+
+TEST(Up, OfAHeightFieldIsZWithoutAGrid) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> part(-0.2f, 0.2f);  // of 2 / 79 from one to the next: no face turns
+    const auto moved = [&](float at) { return std::abs(at) < 0.999f ? at + part(random) * 2 / 79 : at; };
+    const Mesh mesh = placed(height_field(peaks), [&](const Vec3& p) {
+        const float x = moved(p.x()), y = moved(p.y());
+        return Vec3(x, y, peaks(x, y));
+    });
+    EXPECT_EQ(up_of(mesh), "+z");
+    EXPECT_EQ(up_of(y_up(mesh)), "+y");
+}
+
+TEST(Up, OfAHeightFieldIsZWhateverTheWindings) {
+    const Mesh mesh = height_field(peaks);
+    Array3i::Dense F = mesh.F();
+    for (Eigen::Index i = 0; i < F.rows(); i += 2) std::swap(F(i, 1), F(i, 2));
+    EXPECT_EQ(up_of(Mesh(mesh.V(), Array3i(F))), "+z");
+}
+
+TEST(Up, OfWhatOnlyResemblesAHeightFieldIsY) {
+    const float none = std::nanf("");
+    const Mesh mask = height_field([&](float x, float y) { return x * x + y * y < 1 ? peaks(x, y) : none; });
+    EXPECT_EQ(up_of(mask), "+y") << "round, as a scan of a face";
+    EXPECT_EQ(up_of(corners_of(mask)), "+y");
+    const Mesh chin =
+        height_field([&](float x, float y) { return x * x + y * y < 1 && y > -0.6f ? peaks(x, y) : none; });
+    EXPECT_EQ(up_of(chin), "+y") << "round on three sides";
+    const Mesh screen = placed(height_field(peaks), [](const Vec3& p) {
+        const float angle = float(pi) / 2 * p.x();
+        return Vec3(std::sin(angle), p.y(), std::cos(angle));
+    });
+    EXPECT_EQ(up_of(screen), "+y") << "curved along x alone, on no grid of x and y";
+    // By hand: x = 0.5 u d at the sides, with d from 2.8 to 3.2: the border is not straight.
+    const Mesh seen = placed(height_field(peaks), [](const Vec3& p) {
+        const float depth = 3 + 0.2f * std::sin(3.5f * p.x() + 2 * p.y());
+        return Vec3(0.5f * p.x() * depth, 0.4f * p.y() * depth, -depth);
+    });
+    EXPECT_EQ(up_of(seen), "+y") << "a depth image";
+    Mesh told = height_field(peaks);
+    told.edit([](MeshData& data) { data.front = Vec3d::UnitZ(); });
+    EXPECT_EQ(up_of(told), "+y") << "a depth image, as its file says";
+    const Mesh front = height_field([](float x, float y) { return 2 + peaks(x, y) / 10; });
+    Array3f::Dense both(2 * front.V().rows(), 3);
+    both << front.V(), front.V() * Eigen::DiagonalMatrix<float, 3>(1, 1, -1);
+    EXPECT_EQ(up_of(cloud(both)), "+y") << "two heights at each place";
 }
 
 TEST(Up, OfReliefsAndSheetsIsY) {

@@ -184,8 +184,9 @@ bool is_surface(int axis, const FieldSamples& samples) {
 /// What vertices and middles of edges touch of the rectangle around them, across an axis.
 class Outline {
   public:
-    Outline(int axis, const FieldSamples& samples, const std::array<size_t, 2>& cells)
-        : axis_(axis), cells_(cells), inside_(cells[0] * cells[1]) {
+    /// `border`: part of a side within which points are at the other.
+    Outline(int axis, const FieldSamples& samples, const std::array<size_t, 2>& cells, double border)
+        : axis_(axis), border_(border), cells_(cells), inside_(cells[0] * cells[1]) {
         for (size_t side : {0, 1}) borders_[side].resize(2 * cells[1 - side]);
         for (const std::vector<Vec3d>* points : {&samples.vertices, &samples.middles})
             for (const Vec3d& point : *points) add(point, samples);
@@ -205,7 +206,7 @@ class Outline {
 
   private:
     void add(const Vec3d& point, const FieldSamples& samples) {
-        constexpr double border = 1.0 / 16, corner = 1.0 / 8;
+        constexpr double corner = 1.0 / 8;
         std::array<double, 2> at{};
         std::array<size_t, 2> cell{};
         for (size_t i : {0, 1}) {
@@ -216,12 +217,13 @@ class Outline {
         inside_[cell[0] * cells_[1] + cell[1]] = true;
         const auto is_within = [&](size_t i, double part) { return std::min(at[i], 1 - at[i]) <= part; };
         for (size_t i : {0, 1})
-            if (is_within(i, border)) borders_[i][2 * cell[1 - i] + size_t(at[i] > 0.5)] = true;
+            if (is_within(i, border_)) borders_[i][2 * cell[1 - i] + size_t(at[i] > 0.5)] = true;
         if (is_within(0, corner) && is_within(1, corner))
             corners_[2 * size_t(at[0] > 0.5) + size_t(at[1] > 0.5)] = true;
     }
 
     int axis_;
+    double border_;
     std::array<size_t, 2> cells_;
     std::vector<bool> inside_;
     std::array<std::vector<bool>, 2> borders_;  ///< cells along the two sides across either direction
@@ -233,8 +235,17 @@ size_t outline_cells(double vertices) {
     return size_t(std::clamp(0.7 * vertices, 4.0, 16.0));
 }
 
-bool is_rectangular(int axis, const FieldSamples& samples, const std::array<double, 2>& vertices) {
-    return Outline(axis, samples, {outline_cells(vertices[0]), outline_cells(vertices[1])}).is_rectangle();
+bool is_rectangular_grid(int axis, const FieldSamples& samples, const GridLines& lines) {
+    const auto cells = [&](int across) { return outline_cells(double(lines[size_t(across) % 3].size())); };
+    return Outline(axis, samples, {cells(axis + 1), cells(axis + 2)}, 1.0 / 16).is_rectangle();
+}
+
+/// The border of what a depth camera sees is straight in its image, not in space: that of a surface has to be
+/// as straight as that of a triangulation of points within a rectangle.
+bool is_rectangular_surface(int axis, const FieldSamples& samples) {
+    const double vertices = std::sqrt(samples.count);
+    const size_t cells = outline_cells(vertices);
+    return Outline(axis, samples, {cells, cells}, std::clamp(0.5 / vertices, 0.01, 1.0 / 16)).is_rectangle();
 }
 
 /// What says that content is a height field along an axis; the later the clearer.
@@ -242,15 +253,11 @@ enum class FieldSign { none, surface, grid };
 
 FieldSign field_sign(int axis, const FieldSamples& samples, const GridLines& lines) {
     constexpr double flat = 1e-4;
-    const size_t u = size_t(axis + 1) % 3, v = size_t(axis + 2) % 3;
-    const double side = std::max(samples.extent(int(u)), samples.extent(int(v)));
+    const double side = std::max(samples.extent((axis + 1) % 3), samples.extent((axis + 2) % 3));
     if (!(samples.box.sizes().minCoeff() > 0) || samples.extent(axis) < flat * side) return FieldSign::none;
-    if (is_grid(axis, samples, lines))
-        if (is_rectangular(axis, samples, {double(lines[u].size()), double(lines[v].size())}))
-            return FieldSign::grid;
-    if (!is_surface(axis, samples)) return FieldSign::none;
-    const double vertices = std::sqrt(samples.count);
-    return is_rectangular(axis, samples, {vertices, vertices}) ? FieldSign::surface : FieldSign::none;
+    if (is_grid(axis, samples, lines) && is_rectangular_grid(axis, samples, lines)) return FieldSign::grid;
+    return is_surface(axis, samples) && is_rectangular_surface(axis, samples) ? FieldSign::surface
+                                                                              : FieldSign::none;
 }
 
 }  // namespace
