@@ -257,18 +257,20 @@ TEST(Up, OfWhatOnlyResemblesAHeightFieldIsY) {
         return Vec3(std::sin(angle), p.y(), std::cos(angle));
     });
     EXPECT_EQ(up_of(screen), "+y") << "curved along x alone, on no grid of x and y";
-    // By hand: x = 0.5 u d at the sides, with d from 2.8 to 3.2: the border is not straight.
+    // The upper and lower border, 0.4 d from the middle, with d from 2.8 to 3.2, are not straight.
     const Mesh seen = placed(height_field(peaks), [](const Vec3& p) {
-        const float depth = 3 + 0.2f * std::sin(3.5f * p.x() + 2 * p.y());
+        const float ball = std::hypot(p.x(), p.y()) < 0.4f ? 1.0f : 0.0f;
+        const float depth = 3 + 0.2f * std::sin(3.5f * p.x()) - ball;
         return Vec3(0.5f * p.x() * depth, 0.4f * p.y() * depth, -depth);
     });
     EXPECT_EQ(up_of(seen), "+y") << "a depth image";
     Mesh told = height_field(peaks);
     told.edit([](MeshData& data) { data.front = Vec3d::UnitZ(); });
     EXPECT_EQ(up_of(told), "+y") << "a depth image, as its file says";
-    const Mesh front = height_field([](float x, float y) { return 2 + peaks(x, y) / 10; });
-    Array3f::Dense both(2 * front.V().rows(), 3);
-    both << front.V(), front.V() * Eigen::DiagonalMatrix<float, 3>(1, 1, -1);
+    const Mesh above = height_field([](float x, float y) { return 0.3f * peaks(x, y); });
+    const Mesh below = height_field([](float x, float y) { return 0.3f * peaks(x, y) - 1 - x * x; });
+    Array3f::Dense both(2 * above.V().rows(), 3);
+    both << above.V(), below.V();
     EXPECT_EQ(up_of(cloud(both)), "+y") << "two heights at each place";
 }
 

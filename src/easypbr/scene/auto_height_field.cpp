@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -245,7 +244,7 @@ bool is_rectangular_grid(int axis, const FieldSamples& samples, const GridLines&
 bool is_rectangular_surface(int axis, const FieldSamples& samples) {
     const double vertices = std::sqrt(samples.count);
     const size_t cells = outline_cells(vertices);
-    return Outline(axis, samples, {cells, cells}, std::clamp(0.5 / vertices, 0.01, 1.0 / 16)).is_rectangle();
+    return Outline(axis, samples, {cells, cells}, std::clamp(1 / vertices, 0.01, 1.0 / 16)).is_rectangle();
 }
 
 /// What says that content is a height field along an axis; the later the clearer.
