@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "easypbr/core/interrupt.h"
 #include "geometry/measure.h"
 
 namespace easypbr::tubes_test {
@@ -221,6 +222,22 @@ TEST(Tubes, PointsAtOnePlaceAreOneAndEdgesAreJoinedOnce) {
     expect_sound(tubes, 0.8);
     EXPECT_EQ(tubes.V().rows(), plain.V().rows());
     EXPECT_NEAR(volume(*tubes.snapshot()), volume(*plain.snapshot()), 1e-6);
+}
+
+TEST(Tubes, CanBeGivenUpAtEachRing) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 2000; ++i) points.emplace_back(float(i), 0.0f, 0.0f);
+    const Mesh line = polyline(points);
+    int asked = 0;
+    const auto make = [&](int last) {
+        const InterruptScope scope([&] { return ++asked == last; });
+        (void)make_tubes(line, {.radius = 0.1, .sides = 3});
+    };
+    make(0);
+    EXPECT_GE(asked, 2000);
+    asked = 0;
+    EXPECT_THROW(make(1000), Interrupted);
+    EXPECT_EQ(asked, 1000);
 }
 
 TEST(Tubes, WhatCannotBeIsRefused) {

@@ -127,12 +127,17 @@ def test_geometry_and_files(tmp_path):
 def test_loops_of_one_thread_and_calls_into_other_libraries():
     ball = shapes.icosphere(1, 9)
     points = Mesh(np.random.default_rng(1).random((3_000_000, 3)))
+    along = np.arange(1_000_000)
+    line = Mesh()
+    line.V = np.stack([along / 1000, np.sin(along / 1000), np.cos(along / 1000)], axis=1)
+    line.E = np.stack([along[:-1], along[1:]], axis=1)
     for work in (
         points.oriented_bounding_box,
         lambda: ball.decimate(faces=2000),
         ball.remove_duplicate_vertices,
         ball.face_components,
         ball.split,
+        lambda: line.to_tubes(1e-4),
     ):
         assert seconds_until_interrupted(lambda work=work: [work() for _ in range(1000)]) < LIMIT_S
 

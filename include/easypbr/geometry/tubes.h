@@ -27,7 +27,7 @@ struct TubeOptions {
 /// intensities, scalars and texture coordinates of the vertices are carried over; faces and points without an
 /// edge are left out. Vertices at the same place that an edge joins count as one, and each pair is joined
 /// once. Throws ArgumentError when no edge has a length, for radii that are not above 0, and when both radius
-/// and radii are given.
+/// and radii are given; Interrupted.
 Mesh make_tubes(const Mesh& mesh, const TubeOptions& options = {});
 
 }  // namespace easypbr

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "easypbr/core/interrupt.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/disjoint_sets.h"
 #include "easypbr/geometry/gather.h"
@@ -39,14 +40,17 @@ class LineNetwork {
         const std::vector<int32_t> place = places();
         std::vector<KeyedIndex> pairs;
         for (Eigen::Index e = 0; e < mesh.E.rows(); ++e) {
+            check_interrupt(size_t(e));
             const int32_t a = place[size_t(mesh.E(e, 0))], b = place[size_t(mesh.E(e, 1))];
             if (a != b)
                 pairs.push_back({uint64_t(std::min(a, b)) << 32 | uint64_t(std::max(a, b)), uint32_t(e)});
         }
         parallel_sort(pairs);
-        for (size_t i = 0; i < pairs.size(); ++i)
+        for (size_t i = 0; i < pairs.size(); ++i) {
+            check_interrupt(i);
             if (i == 0 || pairs[i].key != pairs[i - 1].key)
                 add(int32_t(pairs[i].key >> 32), int32_t(pairs[i].key & 0xffffffff));
+        }
     }
 
     bool empty() const { return edges_.empty(); }
@@ -70,6 +74,7 @@ class LineNetwork {
     std::vector<Chain> chains(MayJoin&& may_join) const {
         std::vector<char> is_joined(at_.size(), 0), is_used(edges_.size(), 0);
         for (size_t place = 0; place < at_.size(); ++place) {
+            check_interrupt(place);
             if (at_[place].size() != 2) continue;
             const LineEdge &in = edges_[size_t(at_[place][0])], &out = edges_[size_t(at_[place][1])];
             is_joined[place] = may_join(in.other(int32_t(place)), int32_t(place), out.other(int32_t(place)),
@@ -80,6 +85,7 @@ class LineNetwork {
             if (is_used[edge]) return;
             Chain chain{{start}, false};
             while (true) {
+                check_interrupt(chain.places.size());
                 is_used[edge] = 1;
                 const int32_t place = edges_[edge].other(chain.places.back());
                 chain.places.push_back(place);
@@ -107,9 +113,11 @@ class LineNetwork {
     /// For each vertex the first of those at its place that edges of length 0 join it to.
     std::vector<int32_t> places() const {
         geometry::DisjointSets sets(at_.size());
-        for (Eigen::Index e = 0; e < mesh_.E.rows(); ++e)
+        for (Eigen::Index e = 0; e < mesh_.E.rows(); ++e) {
+            check_interrupt(size_t(e));
             if (mesh_.V.row(mesh_.E(e, 0)) == mesh_.V.row(mesh_.E(e, 1)))
                 sets.unite(mesh_.E(e, 0), mesh_.E(e, 1));
+        }
         std::vector<int32_t> first(at_.size(), -1), result(at_.size());
         for (size_t v = 0; v < result.size(); ++v) {
             int32_t& known = first[size_t(sets.find(int32_t(v)))];
@@ -163,6 +171,7 @@ class TubeSurface {
     /// other frame's line whose normals lean by `slope` along it. Returns its first vertex.
     int32_t add_ring(const Vec3d& center, double radius, const LineFrame& frame, const Vec3d& plane,
                      const LineFrame& normals, double slope, int32_t source) {
+        check_interrupt();
         const int32_t first = next(source, sides_);
         for (const Vec2d& turn : circle_) {
             const Vec3d across = frame.around(turn);
@@ -297,6 +306,7 @@ class TubeMaker {
         frames_.clear();
         slopes_.clear();
         for (size_t i = 0; i + 1 < places_.size(); ++i) {
+            check_interrupt(i);
             const Vec3d step = point(i + 1) - point(i);
             const Vec3d direction = step.stableNormalized();
             frames_.push_back(i == 0 ? LineFrame(direction) : frames_.back().turned_to(direction));
@@ -317,8 +327,10 @@ class TubeMaker {
         std::vector<double> begins{0};  // along the ring, of the edges
         for (size_t i = 0; i < edge_count(); ++i)
             begins.push_back(begins.back() + (point(i + 1) - point(i)).stableNorm());
-        for (size_t i = 0; i < edge_count(); ++i)
+        for (size_t i = 0; i < edge_count(); ++i) {
+            check_interrupt(i);
             frames_[i] = frames_[i].rolled((angle - whole * side) * begins[i] / begins.back());
+        }
     }
 
     /// Between two edges; `before` and `after` are the same but for their directions.
