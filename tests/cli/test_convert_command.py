@@ -79,6 +79,17 @@ def test_lines_become_tubes(easypbr, tmp_path):
     assert size(found) == pytest.approx([1.2, 1.2, 0.2], abs=1e-6)
 
 
+def test_tubes_stand_beside_faces(easypbr, tmp_path):
+    (tmp_path / "mixed.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\n"
+                                        "o leaf\nf 1 2 3\no pipe\nl 4 5\n")
+    easypbr("convert", "mixed.obj", "mixed.glb", "--tubes", "0.1")
+    found = info(easypbr, "mixed.glb")
+    # The triangle; a band of 12 quads, and at both ends two bands and 12 triangles of a half sphere.
+    assert found["faces"] == 1 + 24 + 2 * (2 * 24 + 12)
+    # From the triangle's corner to the end of the tube; its highest place is the triangle's.
+    assert size(found) == pytest.approx([6.1, 1.1, 0.2], abs=1e-6)
+
+
 def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
     easypbr("convert", box, "box.glb")
     easypbr("convert", "box.glb", "one.glb", "--merge")

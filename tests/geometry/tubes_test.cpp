@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/log.h"
 #include "geometry/measure.h"
 
 namespace easypbr::tubes_test {
@@ -195,6 +196,85 @@ TEST(Tubes, CarryWhatTheVerticesHave) {
     }
     // Automatic: 1 / 200 of the diagonal, which is 2.
     EXPECT_NEAR(tubes->V.col(0).maxCoeff(), 2.01f, 1e-6f);
+}
+
+/// A line from x = 5 to 6, and a triangle from 0 to 1 of the second material.
+MeshData line_and_triangle() {
+    MeshData mesh = *polyline({{5, 0, 0}, {6, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).snapshot();
+    mesh.E = Array2i::Dense(Eigen::RowVector2i(0, 1));
+    mesh.F = Array3i::Dense(Eigen::RowVector3i(2, 3, 4));
+    mesh.materials.resize(2);
+    mesh.materials[0].name = "pipe";
+    mesh.materials[1].name = "leaf";
+    mesh.parts = {{"blade", 0, 1, 1}};
+    return mesh;
+}
+
+TEST(Tubes, StandBesideTheFaces) {
+    MeshData mesh = line_and_triangle();
+    mesh.L = Eigen::VectorXi(Eigen::VectorXi::LinSpaced(5, 10, 14));
+    mesh.scalars.push_back({"of faces", Eigen::VectorXf(Eigen::VectorXf::Constant(1, 7))});
+    mesh.source_face = Eigen::VectorXi(Eigen::VectorXi::Constant(1, 3));
+    mesh.style.mode = DrawMode::lines;
+    mesh.children = {Mesh(MeshData())};
+    const Mesh tube = make_tubes(polyline({{5, 0, 0}, {6, 0, 0}}), {.radius = 0.1});
+    const auto whole = make_tubes(Mesh(mesh), {.radius = 0.1}).snapshot();
+    EXPECT_NO_THROW(validate(*whole));
+    EXPECT_TRUE(whole->E.empty());
+    EXPECT_FALSE(whole->style.mode.value());
+    EXPECT_EQ(whole->children.size(), 1u);
+    ASSERT_EQ(whole->V.rows(), 3 + tube.V().rows());
+    ASSERT_EQ(whole->F.rows(), 1 + tube.F().rows());
+    EXPECT_EQ(whole->F.row(0), Eigen::RowVector3i(0, 1, 2));
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(whole->V.row(k), mesh.V.row(2 + k)) << k;
+        EXPECT_EQ(whole->N.row(k), Eigen::RowVector3f(0, 0, 1)) << k;
+        EXPECT_EQ(whole->L[k], 12 + k);
+    }
+    EXPECT_EQ(whole->V.bottomRows(tube.V().rows()), tube.V());
+    for (Eigen::Index v = 3; v < whole->V.rows(); ++v)
+        ASSERT_EQ(whole->L[v], whole->V(v, 0) < 5.5f ? 10 : 11) << v;
+    const Array1f& values = scalar_named(*whole, "of faces").values;
+    ASSERT_EQ(values.rows(), whole->F.rows());
+    EXPECT_EQ(values[0], 7);
+    EXPECT_TRUE(values.bottomRows(tube.F().rows()).array().isNaN().all());
+    ASSERT_EQ(whole->parts.size(), 2u);
+    EXPECT_EQ(whole->parts[0].name, "blade");
+    EXPECT_EQ(whole->materials[size_t(whole->parts[0].material)].name, "leaf");
+    EXPECT_EQ(whole->parts[1].first_face, 1);
+    EXPECT_EQ(whole->parts[1].face_count, tube.F().rows());
+    EXPECT_EQ(whole->materials[size_t(whole->parts[1].material)].name, "pipe");
+    EXPECT_EQ(whole->source_face[0], 3);
+}
+
+// Two triangles at a right angle: each of the common edge's vertices gets a normal for either.
+TEST(Tubes, LeaveSharpEdgesOfFacesSharp) {
+    MeshData mesh = *polyline({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {5, 0, 0}, {6, 0, 0}}).snapshot();
+    mesh.E = Array2i::Dense(Eigen::RowVector2i(4, 5));
+    mesh.F = Array3i::Dense(Eigen::Matrix<int, 2, 3, Eigen::RowMajor>{{0, 1, 2}, {1, 0, 3}});
+    const auto whole = make_tubes(Mesh(mesh), {.radius = 0.1}).snapshot();
+    for (Eigen::Index f = 0; f < 2; ++f)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_LT(
+                (whole->N.row(whole->F(f, k)).transpose() - area_vector(*whole, f).normalized().cast<float>())
+                    .norm(),
+                1e-6f)
+                << f << " " << k;
+}
+
+TEST(Tubes, PointsWithoutEdgeAndFaceAreLeftOutWithAWarning) {
+    MeshData mesh = line_and_triangle();
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view text) { warnings.emplace_back(text); });
+    (void)make_tubes(Mesh(mesh), {.radius = 0.1});
+    EXPECT_TRUE(warnings.empty());
+    mesh.name = "scan";
+    mesh.F = {};
+    mesh.parts = {};
+    EXPECT_FALSE(make_tubes(Mesh(mesh), {.radius = 0.1}).V().row(0).isZero());
+    set_log_sink({});
+    EXPECT_EQ(warnings, std::vector<std::string>{
+                            "mesh 'scan': 3 of its 5 vertices belong to no edge and no face: left out"});
 }
 
 TEST(Tubes, RadiiOfVerticesMakeCones) {

@@ -231,10 +231,10 @@ void declare_splats(StepOptions& steps) {
 }
 
 void declare_lines(StepOptions& steps) {
-    steps.number<double>("--tubes", "RADIUS", "Make closed tubes of this radius along the lines",
-                         geometry::require_positive<double>, [](const Mesh& mesh, double radius) {
-                             return make_tubes(mesh, {.radius = radius});
-                         });
+    steps.number<double>(
+        "--tubes", "RADIUS", "Make closed tubes of this radius along the lines, beside the faces",
+        geometry::require_positive<double>,
+        [](const Mesh& mesh, double radius) { return make_tubes(mesh, {.radius = radius}); });
 }
 
 /// The option in place of the function that a message begins with: "crop_box: expected ...".

@@ -7,10 +7,13 @@
 #include <vector>
 
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/disjoint_sets.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
+#include "easypbr/scene/crease.h"
+#include "easypbr/scene/merge.h"
 
 namespace easypbr {
 namespace {
@@ -424,6 +427,30 @@ bool may_go_on(const Vec3d& in, const Vec3d& out, double radius, double shorter_
     return radius * tangent_of_half <= shorter_edge / 2;
 }
 
+void warn_of_points(const MeshData& mesh) {
+    geometry::Selection used = geometry::select_all(mesh);
+    geometry::drop_unreferenced(used, mesh);
+    const Eigen::Index count = mesh.V.rows() - Eigen::Index(used.vertices.size());
+    if (count > 0)
+        log_warning(fmt::format("mesh '{}': {} of its {} vertices belong to no edge and no face: left out",
+                                mesh.name, count, mesh.V.rows()));
+}
+
+/// The faces of the mesh with what belongs to them, then the tubes.
+MeshData joined_with_faces(const MeshData& mesh, MeshData tubes) {
+    geometry::Selection selection = geometry::select_all(mesh);
+    selection.edges.clear();
+    geometry::drop_unreferenced(selection, mesh);
+    MeshData faces = geometry::chosen(mesh, selection);
+    // Tubes have normals: faces without any get those that they are drawn with.
+    if (faces.N.empty()) split_creases(faces, automatic_crease_deg);
+    tubes.parts = {{"tubes", 0, int(tubes.F.rows()), 0}};
+    MeshData whole = merged(std::array{std::move(faces), tubes});
+    whole.children = tubes.children;
+    whole.style.mode = {};
+    return whole;
+}
+
 }  // namespace
 
 Mesh make_tubes(const Mesh& mesh, const TubeOptions& options) {
@@ -445,7 +472,9 @@ Mesh make_tubes(const Mesh& mesh, const TubeOptions& options) {
                               shorter_edge);
          }))
         maker.add(chain);
-    return Mesh(maker.surface().of(*data));
+    warn_of_points(*data);
+    MeshData tubes = maker.surface().of(*data);
+    return Mesh(data->F.empty() ? std::move(tubes) : joined_with_faces(*data, std::move(tubes)));
 }
 
 }  // namespace easypbr

@@ -265,7 +265,7 @@ void bind_lines(MeshClass& mesh) {
         "A new mesh of closed tubes along the edges (E), with what the vertices have. `radius`: a number, "
         "one for each vertex, or by default 1/200 of the diagonal of the box. Lines are mitred at "
         "corners and end in half spheres at branches and sharp turns, and at their ends, which may be "
-        "'flat'.");
+        "'flat'. Faces are kept, before the tubes.");
 }
 
 }  // namespace
