@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -226,6 +227,26 @@ TEST(RayTree, OccludedSegmentsHaveAFaceBetweenTheirEnds) {
     // Ends that go beyond the face by more than touch_part of the diagonal, 2 sqrt(2).
     const Rows3 above = rows_of({{0, 1, 0}});
     EXPECT_EQ(tree.occluded(above, rows_of({{0, -2e-6, 0}, {0, -4e-6, 0}})), (std::vector<uint8_t>{0, 1}));
+}
+
+// Doubled faces are at the same distance to the last bit, whichever corner is their first and however they
+// are wound.
+TEST(RayTree, MeetsTheFirstOfFacesWithTheSameCorners) {
+    const auto single = ball();
+    const Eigen::Index count = single->F.rows();
+    for (const auto& order :
+         std::array<std::array<int, 3>, 4>{{{1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}}}) {
+        MeshData doubled = *single;
+        Array3i::Dense F(2 * count, 3);
+        F.topRows(count) = single->F;
+        for (int k = 0; k < 3; ++k) F.block(count, k, count, 1) = single->F.col(order[size_t(k)]);
+        doubled.F = std::move(F);
+        const Rows3 origins = random_rows(2000, 8, 1.5), directions = random_rows(2000, 9);
+        const RayTree::Hits expected = RayTree(*single).cast(origins, directions);
+        const RayTree::Hits hits = RayTree(doubled).cast(origins, directions);
+        EXPECT_EQ(hits.faces, expected.faces) << order[0] << order[1];
+        EXPECT_EQ(hits.distances, expected.distances) << order[0] << order[1];
+    }
 }
 
 TEST(RayTree, IsOfAMeshWithItsPosesAndChildrenInTheOrderOfMerged) {

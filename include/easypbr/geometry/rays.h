@@ -30,7 +30,9 @@ class RayTree {
 
     Eigen::Index face_count() const;
 
-    /// What each ray meets first. Of several faces at the same distance the first.
+    /// What each ray meets first. Of several faces at the same distance the first: so of faces with the same
+    /// corners, however they are wound. Distances of other faces, as on a common edge, may differ by
+    /// rounding.
     struct Hits {
         std::vector<double> distances;  ///< Euclidean, whatever the direction's length; infinity: none is met
         std::vector<int32_t> faces;     ///< -1: none; the rest of such a row is NaN

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -40,6 +41,14 @@ int strict_sign(const Side& side, const Vec2d& p, const Vec2d& q) {
     if (side.sign != 0) return side.sign;
     if (p.y() != q.y()) return p.y() > q.y() ? 1 : -1;
     return (q.x() > p.x()) - (q.x() < p.x());
+}
+
+/// The same, to the last bit, for any order of the terms.
+double ordered_sum(double a, double b, double c) {
+    if (a > b) std::swap(a, b);
+    if (b > c) std::swap(b, c);
+    if (a > b) std::swap(a, b);
+    return a + b + c;
 }
 
 /// A ray in the frame of a tree. Triangles are sheared so that the ray is an axis, which is the same for all
@@ -82,25 +91,26 @@ class TreeRay {
         int winding = 0;  ///< 1 or -1 by the side that is met; 0 where strict rules let the ray pass
     };
 
+    /// Distances of triangles with the same corners are equal, however they are wound.
     Meeting meet(const geometry::TriangleTree::Triangle& triangle) const {
         std::array<Vec2d, 3> at;
         for (size_t k = 0; k < 3; ++k) at[k] = plane_of(triangle[k]);
         const std::array<Side, 3> sides{side_of(at[1], at[2]), side_of(at[2], at[0]), side_of(at[0], at[1])};
         bool has_left = false, has_right = false;
-        Vec3d areas;
+        Vec3d areas, depths;
         for (size_t k = 0; k < 3; ++k) {
             has_left |= sides[k].sign > 0;
             has_right |= sides[k].sign < 0;
             areas[Eigen::Index(k)] = sides[k].area;
+            depths[Eigen::Index(k)] = (triangle[k][z_] - origin_[z_]) * shear_.z();
         }
+        const double area = ordered_sum(areas.x(), areas.y(), areas.z());
         // Seen edge-on, a triangle has no inside.
-        if (has_left == has_right || !(areas.sum() > 0)) return {};
+        if (has_left == has_right || !(area > 0)) return {};
         Meeting meeting;
-        meeting.barycentric = areas / areas.sum();
-        meeting.distance = 0;
-        for (size_t k = 0; k < 3; ++k)
-            meeting.distance +=
-                meeting.barycentric[Eigen::Index(k)] * (triangle[k][z_] - origin_[z_]) * shear_.z();
+        meeting.barycentric = areas / area;
+        const Vec3d weighted = meeting.barycentric.cwiseProduct(depths);
+        meeting.distance = ordered_sum(weighted.x(), weighted.y(), weighted.z());
         const auto strict = [&](size_t k) { return strict_sign(sides[k], at[(k + 1) % 3], at[(k + 2) % 3]); };
         if (strict(0) == strict(1) && strict(1) == strict(2)) meeting.winding = strict(0);
         return meeting;
