@@ -89,6 +89,17 @@ TEST(LogTicks, AreThoseOfALinearScaleWithinPartOfADecade) {
     EXPECT_EQ(log_texts(2.5f, 4.5f, 4), (Texts{"3", "4"}));
 }
 
+TEST(LogTicks, AreTwoAtLeastWhereThereIsRoom) {
+    // Only 1.05 and 1.5 are multiples of 0.05 and 0.5: the outermost of 0.02 and of 0.2.
+    for (const int most : {2, 3}) {
+        EXPECT_EQ(log_texts(1.01f, 1.09f, most), (Texts{"1.02", "1.08"}));
+        EXPECT_EQ(log_texts(1.2f, 1.9f, most), (Texts{"1.2", "1.8"}));
+    }
+    // 200 alone is 1, 2 or 5 times a power of ten.
+    EXPECT_EQ(log_texts(105.2f, 389.3f, 2), (Texts{"200", "300"}));
+    EXPECT_EQ(log_texts(1.01f, 1.09f, 1), (Texts{"1.05"}));
+}
+
 // A bar holds two rows of text for each of the `most` ticks; texts on less than 0.6 rows of their own touch.
 TEST(LogTicks, DoNotTouch) {
     for (const float min : {0.003f, 0.7f, 1.0f, 1.01f, 4.0f, 8.9f})
@@ -97,7 +108,7 @@ TEST(LogTicks, DoNotTouch) {
                 const float max = min * std::pow(10.0f, decades);
                 const ValueRange range{min, max, min, max, ColorScale::log};
                 const std::vector<Tick> ticks = ticks_of(range, most);
-                EXPECT_GE(ticks.size(), 1u) << min << " " << max;
+                EXPECT_GE(ticks.size(), 2u) << min << " " << max;
                 EXPECT_LE(int(ticks.size()), most) << min << " " << max;
                 for (size_t i = 1; i < ticks.size(); ++i)
                     EXPECT_GE(

@@ -228,12 +228,16 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
     double step = round_step((max - min) / most);
     const auto first = [&] { return std::ceil(min / step - 1e-6); };
     const auto last = [&] { return std::floor(max / step + 1e-6); };
-    while (last() - first() + 1 > most) step = round_step(step * 1.5);
-    // None: the next finer distance.
-    while (last() < first()) step = round_step(step * 0.4);
+    const auto count = [&] { return last() - first() + 1; };
+    while (count() > most) step = round_step(step * 1.5);
+    // Too few: of the next finer distance the outermost, where all are too many.
+    while (count() < std::min(2, most)) step = round_step(step * 0.4);
     const double magnitude = std::max(std::abs(min), std::abs(max));
     std::vector<double> counts;
-    for (double k = std::max(first(), last() - most + 1); k <= last(); ++k) counts.push_back(k);
+    if (count() <= most)
+        for (double k = first(); k <= last(); ++k) counts.push_back(k);
+    else
+        counts = most == 1 ? std::vector{last()} : std::vector{first(), last()};
     return ticks_at(counts, step, magnitude);
 }
 
@@ -305,7 +309,8 @@ std::vector<Tick> ticks_of(const ValueRange& range, int most) {
     if (fine.size() >= enough && fine.size() <= size_t(most)) return ticks_with_text(fine);
     if (linear.size() > 1 && has_room(linear, range, most)) return linear;
     if (powers.size() > 1) return ticks_with_text(thinned(powers, size_t(most)));
-    return fine.empty() ? linear : ticks_with_text(thinned(fine, size_t(most)));
+    if (fine.size() > 1) return ticks_with_text(thinned(fine, size_t(most)));
+    return linear.size() > 1 ? std::vector{linear.front(), linear.back()} : linear;
 }
 
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {

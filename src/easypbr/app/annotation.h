@@ -63,11 +63,11 @@ struct Tick {
     double value = 0;
     std::string text;  ///< all of a bar in one format, with as many digits as tell them apart
 };
-/// Values from `min` to `max` (larger) at a round distance: 1, 2 or 5 times a power of ten, at least
-/// one, at most `most` of them.
+/// Multiples of a round distance, 1, 2 or 5 times a power of ten, from `min` to `max` (larger): at most
+/// `most` of them, and two at least where `most` is. All of them, or the least and the largest.
 std::vector<Tick> ticks_of(double min, double max, int most);
 /// Of a logarithmic scale 1, 2 and 5 times powers of ten where `most` is enough for all of them, else powers
-/// of ten; those of a linear scale where the range holds hardly any of these.
+/// of ten; those of a linear scale, or two of them, where the range holds hardly any of these.
 std::vector<Tick> ticks_of(const ValueRange& range, int most);
 
 }  // namespace easypbr::app
