@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -330,6 +331,8 @@ TEST(RayTree, RefusesWhatHasNoAnswer) {
     EXPECT_THROW(tree.contains(no_number), ArgumentError);
     EXPECT_THROW(visible_vertices(make_box(), Vec3d(NAN, 0, 0)), ArgumentError);
     EXPECT_THROW(visible_vertices(make_box(), Camera(), Vec2i(0, 5)), ArgumentError);
+    EXPECT_EQ(refusal([&] { visible_vertices(make_box(), Camera(), {}, {}, 0.0); }),
+              "camera: near: expected a number > 0, got 0");
 }
 
 TEST(RayTree, TakesRaysOfAnyLength) {
@@ -379,8 +382,7 @@ TEST(VisibleVertices, OfACameraLieInItsPicture) {
     for (Eigen::Index v = 0; v < V.rows(); ++v) EXPECT_EQ(seen[size_t(v)], std::abs(V(v, 2)) < 1.2f) << v;
     EXPECT_EQ(visible_vertices(plane, camera), std::vector<uint8_t>(25, 1))
         << "without a size: all before it";
-    camera.near = 2.5;
-    EXPECT_EQ(visible_vertices(plane, camera, Vec2i(200, 100)), std::vector<uint8_t>(25, 0));
+    EXPECT_EQ(visible_vertices(plane, camera, {}, {}, 2.5), std::vector<uint8_t>(25, 0));
     camera = Camera::look_at({0, 2, 0}, {0, 5, 0}, {0, 0, -1});
     EXPECT_EQ(visible_vertices(plane, camera), std::vector<uint8_t>(25, 0)) << "behind it";
 }
@@ -399,9 +401,31 @@ TEST(VisibleVertices, OfAnOrthographicCameraAreSeenAlongItsAxis) {
         if (v >= 9 && reach == 1) continue;
         EXPECT_EQ(seen[size_t(v)], v < 9 || reach > 1) << v;
     }
-    camera.near = 3.5;  // The roof is before it and hides nothing.
-    const std::vector<uint8_t> below = visible_vertices(roof, camera, Vec2i(100, 100));
+    // The roof is before the near plane and hides nothing.
+    const std::vector<uint8_t> below = visible_vertices(roof, camera, Vec2i(100, 100), {}, 3.5);
     for (size_t v = 0; v < below.size(); ++v) EXPECT_EQ(below[v], v >= 9) << v;
+}
+
+// Views infer near and far planes, too.
+TEST(VisibleVertices, DoNotDependOnTheCamerasOwnNearAndFar) {
+    const Mesh small = make_icosphere(0.001, 3), box = make_box();
+    const Vec3d close(0, 0, 0.004);
+    const auto seen = [](const Mesh& mesh, const Camera& camera) {
+        return visible_vertices(mesh, camera, Vec2i(64, 64));
+    };
+    EXPECT_EQ(seen(small, Camera::look_at(close, {0, 0, 0})), visible_vertices(small, close));
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        Camera camera = Camera::look_at({0.2, 0.1, 200}, {0.2, 0.1, 0});
+        camera.projection = projection;
+        const std::vector<uint8_t> expected = seen(box, camera);
+        EXPECT_EQ(std::ranges::count(expected, 1), 12) << "three vertices at each corner of the face";
+        camera.near = 300;
+        camera.far = 400;
+        EXPECT_EQ(seen(box, camera), expected);
+    }
+    // What is behind a camera within the content stays unseen.
+    const std::vector<uint8_t> ahead = visible_vertices(box, Camera::look_at({0, 0, 0}, {0, 0, 1}));
+    for (Eigen::Index v = 0; v < box.V().rows(); ++v) EXPECT_EQ(ahead[size_t(v)], box.V()(v, 2) > 0) << v;
 }
 
 TEST(VisibleVertices, CountTheOffset) {

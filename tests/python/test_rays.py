@@ -102,6 +102,18 @@ def test_vertices_that_a_point_and_a_camera_see():
         assert plane.visible_from(Camera.from_opencv(K, T, (width, 102)), (width, 102)).sum() == expected
 
 
+def test_the_near_plane_is_inferred_unless_it_is_given():
+    ball = shapes.icosphere(0.001, 3)
+    camera = Camera.look_at((0, 0, 0.004), (0, 0, 0))
+    seen = ball.visible_from((0, 0, 0.004))
+    assert camera.near == 0.01 and 0 < seen.sum() < len(ball.V) / 2
+    np.testing.assert_array_equal(ball.visible_from(camera), seen)
+    # Beyond the foremost vertex, which is 0.003 away: the rest of the ball is open.
+    cut = ball.visible_from(camera, near=0.0035)
+    np.testing.assert_array_equal(cut & (ball.V[:, 2] > 0.0005), False)
+    assert cut.sum() > seen.sum()
+
+
 def test_a_camera_of_a_scene_far_from_zero():
     box = Mesh(shapes.box(1).V.astype(float) + UTM, shapes.box(1).F)
     scene = Scene()
@@ -130,6 +142,8 @@ def test_a_camera_of_a_scene_far_from_zero():
     (lambda: RayTree(shapes.box()).contains([[NAN, 0, 0]]), "finite points"),
     (lambda: shapes.box().visible_from((0, 0)), "viewpoint: expected 3 numbers"),
     (lambda: shapes.box().visible_from((0, 0, 5), (64, 64)), "with a Camera alone"),
+    (lambda: shapes.box().visible_from((0, 0, 5), near=1), "with a Camera alone"),
+    (lambda: shapes.box().visible_from(Camera(), near=0), "camera: near: expected a number > 0, got 0"),
     (lambda: shapes.box().visible_from(Camera(), (0, 64)), "at least 1x1, got 0x64"),
 ])
 def test_questions_without_an_answer_raise(call, message):

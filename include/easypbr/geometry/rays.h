@@ -72,12 +72,14 @@ class RayTree {
 /// finite.
 std::vector<uint8_t> visible_vertices(const Mesh& mesh, const Vec3d& from);
 
-/// The same for a camera: what is before its near plane neither is seen nor hides. With a size only what lies
-/// in a picture of this size is seen. `origin`: what the camera's pose is relative to, as Scene::origin();
-/// else the mesh's offset, as in a scene that shows it first. Throws ArgumentError for a size below 1 x 1,
-/// too.
+/// The same for a camera. With a size only what lies in a picture of this size is seen. `origin`: what the
+/// camera's pose is relative to, as Scene::origin(); else the mesh's offset, as in a scene that shows it
+/// first. What is before the near plane neither is seen nor hides: `near`, as the setting camera.near, else
+/// as views infer it, before all content in front of the camera; the camera's own near and far do not count,
+/// as they do not for views. Throws ArgumentError for a size below 1 x 1 and a near that is not above 0, too.
 std::vector<uint8_t> visible_vertices(const Mesh& mesh, const Camera& camera,
                                       const std::optional<Vec2i>& size = {},
-                                      const std::optional<Vec3d>& origin = {});
+                                      const std::optional<Vec3d>& origin = {},
+                                      const std::optional<double>& near = {});
 
 }  // namespace easypbr

@@ -46,8 +46,10 @@ struct Camera {
     Projection projection = Projection::perspective;
     double fov_y_deg = 30;    ///< vertical field of view; perspective without intrinsics
     double ortho_height = 2;  ///< height of the view volume, world units; orthographic
-    double near = 0.01;       ///< distance to the near plane; the far plane is at infinity (perspective)
-    double far = 100;         ///< orthographic only
+    /// Distance to the near plane; the far plane is at infinity (perspective). A view that is given a camera
+    /// infers its own, unless settings.camera.near says it.
+    double near = 0.01;
+    double far = 100;  ///< orthographic only; views infer it
     std::optional<Intrinsics>
         intrinsics;  ///< perspective; overrides fov_y_deg, scaled to the size of the image
     std::optional<Distortion> distortion;  ///< of the lens; perspective with intrinsics

@@ -12,6 +12,7 @@
 #include "easypbr/scene/eye.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/near_plane.h"
 #include "easypbr/scene/pixel.h"
 
 namespace easypbr {
@@ -285,13 +286,19 @@ std::vector<uint8_t> inverted(std::vector<uint8_t> flags) {
     return flags;
 }
 
+/// The near plane that a view infers for a camera which it is given.
+double inferred_near(const Eye& eye, const MeshData& mesh) {
+    const auto corner = [](const auto& row) { return Vec3d(row.transpose().template cast<double>()); };
+    const Box3d box(corner(mesh.V.colwise().minCoeff()), corner(mesh.V.colwise().maxCoeff()));
+    const double middle = eye.depth(mesh.offset + box.center());
+    const double half = eye.backward.cwiseAbs().dot(box.sizes()) / 2;
+    return detail::near_plane(middle - half, middle > 0 ? middle : box.diagonal().norm() / 2);
+}
+
 /// Whether a camera shows a point where nothing hides it; without a size whether it is beyond the near plane.
-bool is_in_view(const Camera& camera, const Vec3d& point, const std::optional<Vec2i>& size) {
-    const double depth = Eye(camera).depth(point);
-    const bool is_perspective = camera.projection == Projection::perspective;
-    if (!(depth > (is_perspective ? std::max(camera.near, 0.0) : camera.near))) return false;
+bool is_in_view(const Camera& camera, const Eye& eye, const Vec3d& point, const std::optional<Vec2i>& size) {
+    if (!(eye.depth(point) > eye.near)) return false;
     if (!size) return true;
-    if (!is_perspective && depth > camera.far) return false;
     const Vec3d pixel = pixel_of(camera, point, *size);
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= size->x() && pixel.y() <= size->y();
 }
@@ -305,10 +312,12 @@ std::vector<uint8_t> visible_vertices(const Mesh& mesh, const Vec3d& from) {
 }
 
 std::vector<uint8_t> visible_vertices(const Mesh& mesh, const Camera& camera,
-                                      const std::optional<Vec2i>& size, const std::optional<Vec3d>& origin) {
+                                      const std::optional<Vec2i>& size, const std::optional<Vec3d>& origin,
+                                      const std::optional<double>& near) {
     if (size && size->minCoeff() < 1)
         throw ArgumentError(
             fmt::format("camera: expected a picture of at least 1x1, got {}x{}", size->x(), size->y()));
+    if (near) geometry::require_positive("camera: near", *near);
     MeshData whole = flatten(mesh);
     // In the camera's frame of reference from here on.
     whole.offset -= origin.value_or(offset_of_tree(mesh));
@@ -316,10 +325,11 @@ std::vector<uint8_t> visible_vertices(const Mesh& mesh, const Camera& camera,
     const Array3d to = given_positions(whole);
     Array3d::Dense from = to;
     std::vector<uint8_t> in_view(size_t(to.rows()));
-    const Eye eye(camera);
+    Eye eye(camera);
+    eye.near = near ? *near : inferred_near(eye, whole);
     parallel_for(in_view.size(), ray_grain, [&](size_t i) {
         const Vec3d point = paired_row(to, i);
-        in_view[i] = is_in_view(camera, point, size);
+        in_view[i] = is_in_view(camera, eye, point, size);
         if (!in_view[i]) return;
         // Seen from the near plane on.
         const Vec3d towards = eye.towards(point);

@@ -100,7 +100,10 @@ void bind_camera(nb::module_& module) {
                 "Vertical field of view in degrees; perspective cameras without intrinsics.")
         .def_rw("ortho_height", &Camera::ortho_height,
                 "Height of the view volume of an orthographic camera, world units.")
-        .def_rw("near", &Camera::near)
+        .def_rw(
+            "near", &Camera::near,
+            "Distance to the near plane. A view that is given a camera infers its own, unless the setting "
+            "camera.near says it.")
         .def(
             "opencv_K",
             [](const Camera& c, const ArrayLike& size) {

@@ -70,11 +70,11 @@ RayHits cast(const RayTree& tree, const ArrayLike& origins, const ArrayLike& dir
 }
 
 std::vector<uint8_t> visible_from(const Mesh& mesh, const nb::object& viewpoint, const nb::object& size,
-                                  const nb::object& origin) {
+                                  const nb::object& origin, std::optional<double> near) {
     const bool is_camera = nb::isinstance<Camera>(viewpoint);
-    if (!is_camera && !(size.is_none() && origin.is_none()))
+    if (!is_camera && !(size.is_none() && origin.is_none() && !near))
         throw ArgumentError(
-            "visible_from: expected size and origin with a Camera alone, got one with a point");
+            "visible_from: expected size, origin and near with a Camera alone, got one with a point");
     if (!is_camera) {
         const Vec3d from = to_vector3(viewpoint, "viewpoint");
         return released([&] { return visible_vertices(mesh, from); });
@@ -84,7 +84,7 @@ std::vector<uint8_t> visible_from(const Mesh& mesh, const nb::object& viewpoint,
     std::optional<Vec3d> base;
     if (!size.is_none()) picture = to_size(size, "size");
     if (!origin.is_none()) base = to_vector3(origin, "origin");
-    return released([&] { return visible_vertices(mesh, camera, picture, base); });
+    return released([&] { return visible_vertices(mesh, camera, picture, base, near); });
 }
 
 void bind_ray_hits(nb::module_& module) {
@@ -193,17 +193,22 @@ void bind_surfaces(nb::module_& module) {
         .def(
             "visible_from",
             [](const Mesh& mesh, const nb::object& viewpoint, const nb::object& size,
-               const nb::object& origin) { return flags(visible_from(mesh, viewpoint, size, origin)); },
+               const nb::object& origin, std::optional<double> near) {
+                return flags(visible_from(mesh, viewpoint, size, origin, near));
+            },
             nb::arg("viewpoint"), nb::arg("size").none() = nb::none(), nb::arg("origin").none() = nb::none(),
+            nb::arg("near").none() = nb::none(),
             nb::sig("def visible_from(self, viewpoint: Camera | numpy.typing.ArrayLike, size: "
-                    "numpy.typing.ArrayLike | None = None, origin: numpy.typing.ArrayLike | None = None) -> "
-                    "numpy.ndarray"),
+                    "numpy.typing.ArrayLike | None = None, origin: numpy.typing.ArrayLike | None = None, "
+                    "near: float | None = None) -> numpy.ndarray"),
             "A boolean for each vertex: whether no face of the mesh hides it from a point or a Camera; with "
             "children those of merge(). Faces are needed. With the `size` (width, height) of a picture, "
             "vertices "
             "outside of it are not visible. A point includes the offset; a camera is relative to `origin`, "
             "as "
-            "scene.origin, or else to the mesh's offset.")
+            "scene.origin, or else to the mesh's offset. What is before the near plane neither is seen nor "
+            "hides: `near`, as the setting camera.near; by default as a view infers it, whatever near the "
+            "camera has.")
         .def("distance_to", distance_to, nb::arg("other"), nb::arg("samples") = 100000, nb::arg("seed") = 0,
              "One-sided distances of this surface to the other: a dict of max (of vertices and samples), "
              "mean and rms (of the samples). Poses and children are included.")

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "easypbr/scene/near_plane.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::detail {
@@ -95,13 +96,6 @@ double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_ca
                      const PictureShape& picture);
 
 Camera resolve_camera(const Content& content, CameraSettings& settings, const PictureShape& picture);
-
-/// Distance of a near plane before content that begins at a depth, with a target at `distance`. Depths are
-/// reversed floats, so that a small one costs nothing. Only where the content begins behind the camera does
-/// it cut triangles, which GPUs do in single precision of the content's extent.
-constexpr double near_plane(double nearest, double distance) {
-    return nearest > 0 ? std::max(0.1 * nearest, 1e-9 * distance) : 1e-5 * distance;
-}
 
 /// Height of a ground just below the content, so that a floor of its own hides it. Infinite where there is no
 /// content.

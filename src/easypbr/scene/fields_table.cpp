@@ -59,10 +59,11 @@ void add_camera(Table& table) {
         make("camera.ortho_height", EASYPBR_AT(camera.ortho_height),
              "Height of the view volume of an orthographic camera; automatic: frames the content.",
              "world units", {positive, unlimited}));
-    table.push_back(make("camera.near", EASYPBR_AT(camera.near),
-                         "Distance to the near clipping plane; automatic: a tenth of the smallest depth of "
-                         "the content, but at least 0.001 of the distance to the target.",
-                         "world units", {positive, unlimited}));
+    table.push_back(
+        make("camera.near", EASYPBR_AT(camera.near),
+             "Distance to the near clipping plane; automatic: a tenth of the smallest depth of "
+             "the content; where that is behind the camera, 0.00001 of the distance to the target.",
+             "world units", {positive, unlimited}));
     table.push_back(make("camera.azimuth_deg", EASYPBR_AT(camera.azimuth_deg),
                          "Azimuth of an automatic camera: 0 in front of the content, positive to its right; "
                          "automatic: 30, or where the camera of a depth image stood.",
