@@ -19,7 +19,7 @@ PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow",
                 "Server", "ServerClient"],
     "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "splats", "splats_of", "Material", "Style", "Light", "Environment", "Camera", "CameraPath"],
-    "Geometry": ["KdTree", "RayTree"],
+    "Geometry": ["KdTree", "RayTree", "RayHits"],
     "Ground truth and tensors": ["Instance", "Moment", "MeshLoader", "eigen2tensor", "tensor2eigen"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],
     "Window": ["show", "Pick", "Panel", "Event"],
@@ -28,7 +28,7 @@ PYTHON_GROUPS = {
 #: Modules with names of their own.
 MODULES = {"shapes": "Shapes"}
 #: What public functions and attributes return; described below the group of what returns them.
-HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene", "Animations"], "Geometry": ["RayHits"]}
+HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene", "Animations"]}
 
 SETTINGS_HEAD = """# Settings
 

@@ -20,6 +20,7 @@ def moved(mesh, by):
 def test_a_box_is_met_where_its_faces_are():
     tree = RayTree(shapes.box(1))
     hits = tree.cast([[0.1, 0.2, 5], [0.1, 0.2, 0.3], [0.6, 0, 5]], [[0, 0, -3], [0.01, 0, 0], [0, 0, -1]])
+    assert isinstance(hits, easypbr.RayHits)
     np.testing.assert_allclose(hits.distances, [4.5, 0.4, np.inf], atol=1e-13)
     np.testing.assert_allclose(hits.points[:2], [[0.1, 0.2, 0.5], [0.5, 0.2, 0.3]], atol=1e-13)
     np.testing.assert_allclose(hits.normals[:2], [[0, 0, 1], [1, 0, 0]], atol=1e-13)
