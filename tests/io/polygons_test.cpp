@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <vector>
 
+#include "easypbr/core/interrupt.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
-#include "easypbr/io/tables/ear_clipping.h"
 
 namespace easypbr::io::polygons_test {
 namespace {
@@ -17,7 +19,7 @@ namespace {
 using Corners = std::vector<Vec3>;
 
 /// One polygon, whose corners are the vertices that `order` names, as triangles.
-MeshData triangles_of(const Corners& corners, std::vector<int32_t> order = {}) {
+MeshData triangles_of(const Corners& corners, std::vector<int32_t> order = {}, uint64_t looks = most_looks) {
     if (order.empty()) {
         order.resize(corners.size());
         std::iota(order.begin(), order.end(), 0);
@@ -30,7 +32,7 @@ MeshData triangles_of(const Corners& corners, std::vector<int32_t> order = {}) {
     polygons.rows = 1;
     polygons.width = order.size();
     polygons.values = Eigen::Map<const Eigen::VectorXi>(order.data(), Eigen::Index(order.size()));
-    triangulate(std::move(polygons), mesh);
+    triangulate(std::move(polygons), mesh, looks);
     EXPECT_EQ(size_t(mesh.F.rows()), order.size() - 2);
     return mesh;
 }
@@ -57,6 +59,16 @@ Corners flat(const std::vector<std::pair<float, float>>& points) {
     Corners corners;
     for (const auto& [x, y] : points) corners.emplace_back(x, y, 0.0f);
     return corners;
+}
+
+/// Twice the signed area, by the shoelace formula.
+double outline_area(const Corners& corners) {
+    double area = 0;
+    for (size_t i = 0; i < corners.size(); ++i) {
+        const Vec3d a = corners[i].cast<double>(), b = corners[(i + 1) % corners.size()].cast<double>();
+        area += a.x() * b.y() - a.y() * b.x();
+    }
+    return area;
 }
 
 /// A square of 3 x 3 without its middle upper square and the one below: 9 - 2.
@@ -104,21 +116,21 @@ TEST(Polygons, HolesBehindABridgeStayHoles) {
     }
 }
 
-TEST(Polygons, ASpiralOfFortyCorners) {
-    Corners corners;
+Corners spiral_of(int corners) {
+    Corners spiral;
     const auto add = [&](int i, float width) {
         const float angle = 0.6f * float(i), radius = 1 + width + 0.3f * angle;
-        corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0f);
+        spiral.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0f);
     };
-    for (int i = 0; i < 20; ++i) add(i, 0.3f);
-    for (int i = 20; i-- > 0;) add(i, 0);
-    double area = 0;
-    for (size_t i = 0; i < corners.size(); ++i) {
-        const Vec3d a = corners[i].cast<double>(), b = corners[(i + 1) % corners.size()].cast<double>();
-        area += a.x() * b.y() - a.y() * b.x();
-    }
+    for (int i = 0; i < corners / 2; ++i) add(i, 0.3f);
+    for (int i = corners / 2; i-- > 0;) add(i, 0);
+    return spiral;
+}
+
+TEST(Polygons, ASpiralOfFortyCorners) {
+    const Corners corners = spiral_of(40);
     const std::vector<double> areas = doubled_areas(triangles_of(corners));
-    EXPECT_NEAR(sum(areas), area, 1e-12) << "the rounding of sums in double precision";
+    EXPECT_NEAR(sum(areas), outline_area(corners), 1e-12) << "the rounding of sums in double precision";
     EXPECT_GE(least(areas), 0);
 }
 
@@ -174,25 +186,62 @@ TEST(Polygons, ConvexOnesAreFansOfTheirFirstCorner) {
     }
 }
 
-TEST(Polygons, ManyCornersTakeQuadraticTimeAtMost) {
-    // A comb of long teeth; above the limit it is a fan, of the same signed area.
-    for (const size_t corners : {most_clipped_corners, most_clipped_corners + 2}) {
-        const size_t teeth = corners / 2 - 1;
-        Corners comb = flat({{0, 0}, {float(2 * teeth), 0}});
-        for (size_t i = teeth; i-- > 0;) {
-            comb.emplace_back(float(2 * i + 1), 8.0f, 0.0f);
-            comb.emplace_back(float(2 * i), 1.0f, 0.0f);
-        }
-        const std::vector<double> areas = doubled_areas(triangles_of(comb));
-        double area = 0;
-        for (size_t i = 0; i < comb.size(); ++i) {
-            const Vec3d a = comb[i].cast<double>(), b = comb[(i + 1) % comb.size()].cast<double>();
-            area += a.x() * b.y() - a.y() * b.x();
-        }
-        EXPECT_EQ(sum(areas), area) << "whole numbers";
-        if (corners > most_clipped_corners) continue;
-        EXPECT_GE(least(areas), 0);
+/// A comb of long teeth.
+Corners comb_of(size_t corners) {
+    const size_t teeth = corners / 2 - 1;
+    Corners comb = flat({{0, 0}, {float(2 * teeth), 0}});
+    for (size_t i = teeth; i-- > 0;) {
+        comb.emplace_back(float(2 * i + 1), 8.0f, 0.0f);
+        comb.emplace_back(float(2 * i), 1.0f, 0.0f);
     }
+    return comb;
+}
+
+/// A star whose points have lengths from a linear congruential generator (Numerical Recipes), from 1 to 11.
+Corners star_of(size_t corners) {
+    Corners star;
+    uint32_t random = 1;
+    for (size_t i = 0; i < corners; ++i) {
+        random = 1664525 * random + 1013904223;
+        const double angle = 2 * 3.141592653589793 * double(i) / double(corners);
+        const double length = 1 + 10 * double(random) / 4294967296.0;
+        star.emplace_back(float(length * std::cos(angle)), float(length * std::sin(angle)), 0.0f);
+    }
+    return star;
+}
+
+TEST(Polygons, AnyNumberOfCornersIsCut) {
+    // Each area of the comb is a whole number.
+    const Corners comb = comb_of(200000);
+    const std::vector<double> of_comb = doubled_areas(triangles_of(comb));
+    EXPECT_EQ(sum(of_comb), outline_area(comb));
+    EXPECT_GE(least(of_comb), 0);
+    const Corners star = star_of(100000);
+    const std::vector<double> of_star = doubled_areas(triangles_of(star));
+    // Products of up to 22 x 22 are rounded 2e5 times, and sums of up to 2 x pi x 11^2 1e5 times: by 2^-53.
+    EXPECT_NEAR(sum(of_star), outline_area(star), 2e-8);
+    EXPECT_GE(least(of_star), 0);
+}
+
+TEST(Polygons, TheSearchForEarsEndsWithAWarning) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    const Corners spiral = spiral_of(1000);
+    const MeshData exact = triangles_of(spiral), rough = triangles_of(spiral, {}, 1);
+    set_log_sink({});
+    EXPECT_GE(least(doubled_areas(exact)), 0);
+    EXPECT_LT(least(doubled_areas(rough)), 0) << "one look for each corner is no search";
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("1 of 1 polygons"), std::string::npos) << warnings[0];
+    // Radii are up to 91: sums of 1000 areas of up to 4 x 91^2, also of those turned over, are rounded 1000
+    // times by 2^-53.
+    EXPECT_NEAR(sum(doubled_areas(rough)), outline_area(spiral), 4e-6) << "the signed area stays";
+}
+
+TEST(Polygons, TheSearchForEarsCanBeInterrupted) {
+    const Corners comb = comb_of(200000);
+    const InterruptScope scope([] { return true; });
+    EXPECT_THROW(triangles_of(comb), Interrupted);
 }
 
 TEST(Polygons, AllReadersCutThem) {

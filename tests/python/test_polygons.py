@@ -52,6 +52,17 @@ def test_convex_polygons_are_cut_from_their_first_corner():
     assert as_mesh((V, np.zeros((0, 4), int))).F.shape == (0, 3)
 
 
+@pytest.mark.parametrize("corners", [8_193, 100_000])
+def test_any_number_of_corners(corners):
+    t = np.arange(corners) * 2 * np.pi / corners
+    r = 1 + 0.5 * np.cos(9 * t)
+    V = np.stack([r * np.cos(t), r * np.sin(t), 0 * t], axis=1)
+    areas = signed_areas(as_mesh((V, [np.arange(corners)])))
+    assert (areas >= 0).all()
+    # Half the integral of r^2 is pi (1 + 0.5^2 / 2); chords fall short of it by less than their angle.
+    np.testing.assert_allclose(areas.sum(), np.pi * 1.125, atol=7 / corners)
+
+
 @pytest.mark.parametrize("F, message", [
     ([[0, 1, 2, 4]], "array F: expected vertex indices from 0 to 3, got 4 in row 0 of 1"),
     ([[0, 1, 2], [0, 1, 2, -1]], "array F: expected vertex indices from 0 to 3, got -1 in row 1 of 2"),

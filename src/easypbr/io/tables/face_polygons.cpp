@@ -9,7 +9,6 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/tables/ear_clipping.h"
 #include "easypbr/io/tables/polygons.h"
 
 namespace easypbr::io {
@@ -52,7 +51,7 @@ class TriangleJoiner {
             if (sorted_triangles(cut_) == triangles) return loop_;
             std::rotate(loop_.begin(), loop_.begin() + 1, loop_.end());
         }
-        if (loop_.size() <= most_clipped_corners && lie_in_a_plane()) return loop_;
+        if (lie_in_a_plane()) return loop_;
         return {};
     }
 

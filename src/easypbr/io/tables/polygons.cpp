@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/ear_clipping.h"
 #include "easypbr/scene/mesh_arrays.h"
@@ -64,11 +65,10 @@ Array3i view_as_triangles(Polygons&& polygons) {
 
 }  // namespace
 
-void cut_polygon(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out) {
-    if (size > 4 && size <= most_clipped_corners && !is_fan_good(V, polygon, size))
-        EarClipper(V, polygon, size).write(out);
-    else
-        write_fan(polygon, size, fan_start(V, polygon, size), out);
+bool cut_polygon(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out, uint64_t looks) {
+    if (size > 4 && !is_fan_good(V, polygon, size)) return EarClipper(V, polygon, size, looks).write(out);
+    write_fan(polygon, size, fan_start(V, polygon, size), out);
+    return true;
 }
 
 void check_indices(const Source& source, std::span<const int32_t> indices, size_t count,
@@ -102,7 +102,7 @@ void check_positions(const Source& source, const Array3f::Dense& V) {
                              V(row, 1), V(row, 2)));
 }
 
-void triangulate(Polygons&& polygons, MeshData& mesh) {
+void triangulate(Polygons&& polygons, MeshData& mesh, uint64_t looks) {
     if (polygons.first.empty() && polygons.width == 3) {
         mesh.F = view_as_triangles(std::move(polygons));
         return;
@@ -110,15 +110,20 @@ void triangulate(Polygons&& polygons, MeshData& mesh) {
     const std::vector<uint32_t> first = first_triangles(polygons);
     Array3i::Dense F(first.back(), 3);
     Array1i::Dense source_face(first.back());
+    std::atomic<size_t> rough{0};
     parallel_for(polygons.rows, polygon_grain / 8, [&](size_t i) {
         const size_t size = polygons.size_of(i);
         if (size < 3) return;
         const int32_t* polygon = polygons.values.data() + polygons.begin_of(i);
-        cut_polygon(mesh.V, polygon, size, F.data() + size_t(first[i]) * 3);
+        if (!cut_polygon(mesh.V, polygon, size, F.data() + size_t(first[i]) * 3, looks)) ++rough;
         std::fill(source_face.data() + first[i], source_face.data() + first[i + 1], int32_t(i));
     });
     mesh.F = std::move(F);
     mesh.source_face = std::move(source_face);
+    if (rough > 0)
+        log_warning(
+            fmt::format("{} of {} polygons would take too long to cut exactly: their triangles may overlap",
+                        rough.load(), polygons.rows));
 }
 
 std::vector<int32_t> triangles_of_strips(const Polygons& strips) {

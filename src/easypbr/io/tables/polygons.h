@@ -35,14 +35,21 @@ void check_indices(const Source& source, std::span<const int32_t> indices, size_
 /// Throws FormatError, naming the first one, unless all positions are finite.
 void check_positions(const Source& source, const Array3f::Dense& V);
 
-/// Writes the size - 2 triangles of a polygon of at least three corners, as triangulate() cuts it.
-void cut_polygon(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out);
+/// Where the search for the ears of a polygon ends: looks at the tree of its corners, for each of them. What
+/// does not fold back on itself all over takes some tens, a million spikes of random lengths take 500.
+inline constexpr uint64_t most_looks = 1 << 11;
+
+/// Writes the size - 2 triangles of a polygon of at least three corners, as triangulate() cuts it. Returns
+/// false where the search for ears ended early: triangles may overlap, though their signed areas add up to
+/// the polygon's. Throws Interrupted.
+bool cut_polygon(const Array3f& V, const int32_t* polygon, size_t size, int32_t* out,
+                 uint64_t looks = most_looks);
 
 /// Fills F and source_face of a mesh whose V is set. A polygon of n corners gives n - 2 triangles: a fan
 /// where all of its triangles lie inside, else a concave quad is cut along its other diagonal where only that
-/// one lies inside, and the ears of larger polygons are cut off, up to most_clipped_corners. Polygons with
-/// less than three corners give none.
-void triangulate(Polygons&& polygons, MeshData& mesh);
+/// one lies inside, and the ears of larger polygons are cut off; a warning counts those whose search for ears
+/// ended early. Polygons with less than three corners give none. Throws Interrupted.
+void triangulate(Polygons&& polygons, MeshData& mesh, uint64_t looks = most_looks);
 
 /// Triangles of strips with indices in the order of the winding; -1 starts a new strip, degenerate triangles
 /// are left out.
