@@ -161,10 +161,10 @@ def as_numpy(what: Any) -> Any:
     """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
     device, with or without gradients, or any object with DLPack. bfloat16 and other short floats that numpy lacks become
     float32, and masked values NaN. Other objects are returned unchanged. Raises ArgumentError for tensors and objects with
-    DLPack that are no numpy array, and for masked values that are no floats."""
+    DLPack that are no numpy array, and for masked values that are no floats. Structured arrays keep their masks."""
     if _is_torch(what) and hasattr(what, "detach"):
         return _of_tensor(what)
-    if isinstance(what, np.ma.MaskedArray):
+    if isinstance(what, np.ma.MaskedArray) and what.dtype.names is None:
         return _unmasked(what)
     if isinstance(what, np.ndarray):
         return _known(what)
@@ -194,7 +194,7 @@ def _of_tensor(tensor: Any) -> NDArray[Any]:
 
 
 def _unmasked(array: Any) -> NDArray[Any]:
-    count = int(np.count_nonzero(np.ma.getmaskarray(array))) if array.dtype.names is None else 0
+    count = int(np.count_nonzero(np.ma.getmaskarray(array)))
     if count == 0:
         return np.ma.getdata(array)
     if array.dtype.kind != "f":

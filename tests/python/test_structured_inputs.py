@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from test_inputs import COLORS, POINTS, frame
 
+import easypbr
 from easypbr import Mesh, as_mesh
 
 #: Red with alpha 255, whose float is none; green and blue with alpha 128 and 0.
@@ -70,3 +71,49 @@ def test_organised_points_are_a_cloud(tmp_path):
     assert len(made.V) == 39
     with_intensity = np.dstack([points, np.arange(40).reshape(8, 5) / 8])
     np.testing.assert_array_equal(as_mesh(with_intensity).I, np.delete(np.arange(40) / 8, 13))
+
+
+# Masked values.
+
+
+def masked(**masks):
+    """Points with a whole number, a label and a colour each, some of which are masked."""
+    array = np.ma.array(structured([("xyz", "f4", 3), ("count", "u2"), ("intensity", "i4"), ("label", "u1"), ("rgb", "u4")],
+                                   xyz=POINTS, count=np.arange(40), label=2, rgb=PACKED, intensity=7))
+    for name, rows in masks.items():
+        array.mask[name][rows] = True
+    return array
+
+
+def test_masked_points_of_structured_arrays_are_left_out(caplog):
+    every = dict.fromkeys(("xyz", "count", "intensity", "label", "rgb"), [0, 39])
+    for what in (masked(**every), masked(**every).reshape(8, 5)):
+        mesh = as_mesh(what)
+        np.testing.assert_allclose(mesh.V, POINTS[1:39], atol=1e-7)
+        np.testing.assert_array_equal(mesh.scalars["count"], np.arange(1, 39))
+        np.testing.assert_allclose(mesh.C, UNPACKED[1:39], atol=1e-7)
+        assert (mesh.L == 2).all() and (mesh.I == 7).all()
+    assert caplog.text.count("2 of 40 points have no finite position") == 2
+    with pytest.raises(easypbr.ArgumentError, match="the 2 that have none"):
+        as_mesh(masked(**every), strict=True)
+
+
+def test_masked_coordinates_of_whole_numbers_are_left_out():
+    columns = {name: np.ma.array(np.arange(40), mask=np.arange(40) == row) for row, name in enumerate("xyz")}
+    array = structured([(name, "i4") for name in "xyz"], **{name: values.data for name, values in columns.items()})
+    array = np.ma.array(array, mask=list(zip(*(values.mask for values in columns.values()))))
+    for what in (array, frame(columns)):
+        np.testing.assert_array_equal(as_mesh(what).V[:, 0], np.arange(3, 40))
+
+
+def test_masked_numbers_of_points_are_missing():
+    mesh = as_mesh(masked(count=[3], intensity=[4]))
+    assert len(mesh.V) == 40
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(mesh.scalars["count"])), [3])
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(mesh.I)), [4])
+
+
+@pytest.mark.parametrize("name, what", [("label", "labels"), ("rgb", "colours")])
+def test_masked_labels_and_colors_of_points_are_refused(name, what):
+    with pytest.raises(easypbr.ArgumentError, match=f"{name}: expected {what} of all points, got 2 masked values"):
+        as_mesh(masked(**{"xyz": [5], name: [3, 4, 5]}))

@@ -181,7 +181,7 @@ def is_table(what: Any) -> bool:
 
 def of_table(what: Any, make: Maker) -> Mesh:
     """A cloud of a table's columns by their names."""
-    return _of_columns([(str(word), np.asarray(what[word])) for word in what.columns], make)
+    return _of_columns([(str(word), np.asanyarray(what[word])) for word in what.columns], make)
 
 
 def is_structured(what: Any) -> bool:
@@ -216,7 +216,7 @@ def _of_columns(given: list[tuple[str, NDArray[Any]]], make: Maker) -> Mesh:
     scalars: dict[str, NDArray[Any]] = {}
     packed: dict[str, NDArray[Any]] = {}
     words = []
-    for word, values in given:
+    for word, values in _without_masks(given):
         if values.dtype.kind == "b":
             values = values.astype(np.float32)
         name = _COLUMNS.get(word.strip().lower())
@@ -236,6 +236,29 @@ def _of_columns(given: list[tuple[str, NDArray[Any]]], make: Maker) -> Mesh:
     if not {"r", "g", "b"} <= set(columns):
         columns |= packed
     return make.mesh(scalars=scalars | _incomplete(columns), **_arrays(columns))
+
+
+def _without_masks(given: list[tuple[str, NDArray[Any]]]) -> list[tuple[str, NDArray[Any]]]:
+    """Masked numbers become NaN. Labels and colours have no such value: they may be masked only where the position is, whose
+    point is left out."""
+    masks = [np.ma.getmask(values) for _, values in given]
+    positions = [mask for mask, (word, _) in zip(masks, given) if _COLUMNS.get(word.strip().lower()) in ("x", "y", "z")]
+    left_out = np.logical_or.reduce(positions) if positions else False
+    return [(word, _without_mask(word, values, mask, left_out)) for (word, values), mask in zip(given, masks)]
+
+
+def _without_mask(word: str, values: NDArray[Any], mask: Any, left_out: Any) -> NDArray[Any]:
+    kind = _COLUMNS.get(word.strip().lower(), "")
+    if not np.any(mask) or values.dtype.kind not in "iufb":
+        return np.ma.getdata(values)
+    if kind not in ("r", "g", "b", "a", "L") and not _is_packed_color(word, values):
+        floats = values.dtype if values.dtype.kind == "f" else np.float64
+        return np.asarray(np.ma.filled(values.astype(floats), np.nan))
+    count = int(np.count_nonzero(mask & ~np.broadcast_to(left_out, mask.shape)))
+    if count:
+        what = "labels" if kind == "L" else "colours"
+        raise ArgumentError(f"{word}: expected {what} of all points, got {count} masked values: fill them, as by array.filled(value)")
+    return np.ma.getdata(values)
 
 
 def _is_packed_color(word: str, values: NDArray[Any]) -> bool:
