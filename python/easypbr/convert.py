@@ -83,7 +83,7 @@ def _of_sequence(what: "tuple[Any, ...] | list[Any]", make: Maker) -> Mesh:
     if len(what) == 0:
         raise ArgumentError(f"an empty {type(what).__name__}: there is nothing to show; expected {ACCEPTED}")
     if _is_rows(what):
-        return from_arrays.of_points(np.asarray([np.asarray(as_numpy(row)) for row in what]), make)
+        return from_arrays.of_rows(what, make)
     if len(what) == 2 and _is_matrix(what[0]) and _is_faces(what[1], may_be_floats=isinstance(what, tuple)):
         return from_arrays.of_vertices_and_faces(what[0], what[1], make)
     if len(what) > 2 and _is_matrix(what[0]) and _is_faces(what[1], may_be_floats=False) and _dtype(what[0]) == "f":
@@ -128,15 +128,25 @@ def _is_faces(what: Any, may_be_floats: bool) -> bool:
     """Whether this may be the second of (V, F): vertex indices, as floats only if `may_be_floats`."""
     if what is None:
         return True
+    if isinstance(what, np.ndarray) and what.dtype == object:
+        return _is_faces(what.tolist(), may_be_floats)
     if isinstance(what, (tuple, list)):
-        is_corners = all(isinstance(face, (tuple, list, np.ndarray)) for face in what)
-        return is_corners and all(_is_index(i, may_be_floats) for face in what for i in face)
-    if not _is_array(what) or len(getattr(what, "shape", ())) != 2:
-        return False
+        return all(_is_corners(face, may_be_floats) for face in what)
+    return _is_array(what) and len(getattr(what, "shape", ())) == 2 and _are_indices(what, may_be_floats)
+
+
+def _is_corners(face: Any, may_be_floats: bool) -> bool:
+    """Whether this may be one of a list of faces."""
+    if isinstance(face, (tuple, list)):
+        return all(_is_index(i, may_be_floats) for i in face)
+    return _is_array(face) and len(getattr(face, "shape", ())) == 1 and _are_indices(face, may_be_floats)
+
+
+def _are_indices(what: Any, may_be_floats: bool) -> bool:
     array = np.asarray(as_numpy(what))
     if array.dtype.kind in "iu":
         return True
-    return may_be_floats and array.dtype.kind == "f" and (array.size == 0 or bool((array == np.floor(array)).all()))
+    return may_be_floats and array.dtype.kind == "f" and bool((array == np.floor(array)).all())
 
 
 def _is_index(value: Any, may_be_float: bool) -> bool:

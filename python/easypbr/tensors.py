@@ -183,6 +183,17 @@ def as_numpy(what: Any) -> Any:
     return _known(np.asarray(what))
 
 
+def array_of(what: Any, name: str) -> NDArray[Any]:
+    """as_numpy() of what may be nested lists, too. Raises ArgumentError, which begins with the name, for rows of different
+    lengths."""
+    try:
+        return np.asarray(as_numpy(what))
+    except ArgumentError:
+        raise
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"{name}: expected an array of numbers: {error}") from error
+
+
 def _of_tensor(tensor: Any) -> NDArray[Any]:
     try:
         tensor = tensor.detach().cpu()

@@ -18,6 +18,26 @@ def signed_areas(mesh) -> np.ndarray:
     return np.cross(b - a, c - a)[:, 2] / 2
 
 
+def objects(rows):
+    array = np.empty(len(rows), object)
+    array[:] = rows
+    return array
+
+
+class OfDlpack:
+    """An array of another library."""
+
+    def __init__(self, values):
+        self._array = np.array(values)
+        self.shape = self._array.shape
+
+    def __dlpack__(self, **options):
+        return self._array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self._array.__dlpack_device__()
+
+
 def like_pyvista(V, polygon):
     faces = np.array([len(polygon), *polygon])
     return types.SimpleNamespace(points=V, faces=faces, point_data={}, n_points=len(V), is_all_triangles=False)
@@ -29,9 +49,13 @@ def like_pyvista(V, polygon):
     lambda V, polygon: (V, np.array([polygon], float)),
     lambda V, polygon: (V + [691_000, 5_335_000, 0], [polygon]),
     lambda V, polygon: (V, [polygon, [0, 1, 2]]),
+    lambda V, polygon: (V, objects([polygon, [0, 1, 2]])),
+    lambda V, polygon: (V, np.array([polygon], object)),
+    lambda V, polygon: (V, [OfDlpack(polygon), OfDlpack([0, 1, 2])]),
     lambda V, polygon: {"faces": [polygon], "V": V.tolist()},
+    lambda V, polygon: {"faces": objects([polygon, [0, 1, 2]]), "V": V},
     like_pyvista,
-], ids=["list", "array", "floats", "far", "ragged", "dict", "pyvista"])  # fmt: skip
+], ids=["list", "array", "floats", "far", "ragged", "objects", "object rows", "dlpack", "dict", "dict of objects", "pyvista"])  # fmt: skip
 @pytest.mark.parametrize("V, area", [(ARROW, 2.5), (DART, 0.6)], ids=["arrow", "dart"])
 def test_concave_polygons_are_covered_once(made, V, area):
     for first in range(len(V)):
@@ -72,6 +96,21 @@ def test_any_number_of_corners(corners):
 def test_wrong_corners_are_named(F, message):
     with pytest.raises(easypbr.ArgumentError, match=message):
         as_mesh({"V": DART, "F": F})
+
+
+@pytest.mark.parametrize("what, message", [
+    ([[0, 1, 2], [3, 4]], "points: expected as many numbers in each row, got 3 in row 0 and 2 in row 1"),
+    ([[0, 1, 2], 3], "got 3 in row 0 and a single number in row 1"),
+    ([[0, 1, 2], [3, 4, [5]]], "points: expected an array of numbers"),
+    ((ARROW, [[0.0, 1.0, 2.0], [0.0, 1.0, 2.0, 3.5]]), "got 3 in row 0 and 4 in row 1; rows of faces may differ, and hold whole"),
+    ({"points": [[0, 1, 2], [3, 4]]}, "points: expected an array of numbers"),
+    ({"points": ARROW, "heat": [[1], [2, 3]]}, "scalars 'heat': expected an array of numbers"),
+    ({"points": ARROW, "colors": [[1], [2, 3]]}, "colours: expected an array of numbers"),
+    ({"points": ARROW, "faces": [[0, 1, [2, 3]], [0, 1, 2]]}, "faces: expected an array of numbers"),
+])
+def test_rows_of_different_lengths_are_errors_of_ours(what, message):
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        as_mesh(what)
 
 
 def test_polygons_without_vertices_are_refused():

@@ -1,6 +1,6 @@
 """Arrays by themselves, in dicts and in tables."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .._easypbr import Mesh
 from ..errors import ArgumentError, UnknownNameError
-from ..tensors import as_numpy
+from ..tensors import array_of, as_numpy
 from .maker import Maker, colors, triangles
 
 #: What arrays of a mesh are called: here, in NPZ files, in pandas and in Polyscope. The first is Mesh's own name.
@@ -86,7 +86,7 @@ def _face_counts(F: Any, split: Any, polygon_of: Any) -> tuple[int, ...]:
 def _scalar(word: str, value: Any, counts: tuple[int, ...]) -> NDArray[Any]:
     """`counts`: of vertices, and of faces if there are any."""
     vertices, *others = counts
-    array = np.asarray(as_numpy(value)) if not isinstance(value, str) else np.empty(0, str)
+    array = array_of(value, f"scalars '{word}'") if not isinstance(value, str) else np.empty(0, str)
     if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in counts and len(array):
         return array.astype(np.float32) if array.dtype.kind == "b" else array
     if array.dtype.kind in "biuf" and array.ndim == 1 and vertices:
@@ -112,9 +112,21 @@ def edges(given: Any, count: int) -> Any:
     raise ArgumentError(f"edges: expected k x 2 vertex indices, 'line', 'loop' or 'segments', got '{given}'")
 
 
+def of_rows(given: Sequence[Any], make: Maker) -> Mesh:
+    """A cloud of a list of rows, which may be arrays of other libraries."""
+    rows = [array_of(row, "points") for row in given]
+    other = next((i for i, row in enumerate(rows) if row.shape != rows[0].shape), None)
+    if other is not None:
+        lengths = f"{len(rows[0])} in row 0 and {len(rows[other]) if rows[other].ndim else 'a single number'} in row {other}"
+        raise ArgumentError(
+            f"points: expected as many numbers in each row, got {lengths}; rows of faces may differ, and hold whole numbers"
+        )
+    return of_points(np.asarray(rows), make)
+
+
 def of_points(array: Any, make: Maker) -> Mesh:
     """A cloud of n x 3 positions, or h x w x 3; further columns are recognised as those of a text file without names are."""
-    points = np.asarray(as_numpy(array))
+    points = array_of(array, "points")
     if points.dtype.kind not in "fiu":
         raise ArgumentError(f"points: expected numbers, got {points.dtype}")
     if points.ndim < 2 or points.shape[-1] < 3:
@@ -257,7 +269,9 @@ def _without_mask(word: str, values: NDArray[Any], mask: Any, left_out: Any) -> 
     count = int(np.count_nonzero(mask & ~np.broadcast_to(left_out, mask.shape)))
     if count:
         what = "labels" if kind == "L" else "colours"
-        raise ArgumentError(f"{word}: expected {what} of all points, got {count} masked values: fill them, as by array.filled(value)")
+        raise ArgumentError(
+            f"{word}: expected {what} of all points, got {count} masked values: fill them, as by array.filled(value)"
+        )
     return np.ma.getdata(values)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import _easypbr
 from .._easypbr import Mesh
 from ..errors import ArgumentError
-from ..tensors import as_numpy
+from ..tensors import array_of, as_numpy
 
 _log = logging.getLogger("easypbr")
 
@@ -106,7 +106,7 @@ def _counts(value: Any, kept: NDArray[Any]) -> bool:
 def finite_rows(points: Any, strict: bool = False) -> NDArray[Any] | None:
     """Which rows of n x 3 positions are finite, with a warning that counts the others; None: all of them, or the array is of
     another kind. Raises ArgumentError if none is, or if not all are and `strict` is set."""
-    points = None if points is None else np.asarray(as_numpy(points))
+    points = None if points is None else array_of(points, "points")
     if points is None or points.dtype.kind != "f" or points.ndim != 2 or len(points) == 0:
         return None
     kept: NDArray[Any] = np.isfinite(points).all(axis=1)
@@ -125,16 +125,16 @@ def finite_rows(points: Any, strict: bool = False) -> NDArray[Any] | None:
     return kept
 
 
-def rows(array: Any, count: int) -> NDArray[Any] | None:
+def rows(array: Any, count: int, name: str = "mesh arrays") -> NDArray[Any] | None:
     """The array if it has `count` rows, else None."""
-    array = None if array is None else np.asarray(as_numpy(array))
+    array = None if array is None else array_of(array, name)
     return array if array is not None and count and array.ndim > 0 and len(array) == count else None
 
 
 def colors(array: Any, count: int) -> NDArray[Any] | None:
     """Colours of `count` rows as a mesh takes them: uint8 and uint16 as they are; of other types 0 to 1 if none is above 1,
     else 0 to 255. None: the array has another number of rows. Raises ArgumentError for other values."""
-    found = rows(array, count)
+    found = rows(array, count, "colours")
     if found is None:
         return None
     if found.ndim == 1 or found.shape[1] not in (3, 4):
@@ -152,8 +152,10 @@ def triangles(faces: Any, V: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | N
     if faces is None:
         return None, None
     faces = as_numpy(faces)
+    if isinstance(faces, np.ndarray) and faces.dtype == object:
+        faces = faces.tolist()  # Polygons of different numbers of corners.
     if not isinstance(faces, np.ndarray):
-        polygons = [np.asarray(as_numpy(face)) for face in faces]
+        polygons = [array_of(face, "faces") for face in faces]
         if len({face.shape for face in polygons}) > 1:
             return _cut(_corners(polygons), [len(face) for face in polygons], V)
         faces = np.asarray(polygons)
