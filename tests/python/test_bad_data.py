@@ -240,6 +240,24 @@ def test_scalars_that_float32_does_not_tell_apart_are_a_warning(caplog):
     assert caplog.text.count("'id'") == 1
 
 
+@pytest.mark.parametrize("values, text", [
+    (10**18 + np.arange(10), "holds 1000000000000000000 and 1000000000000000001 as one number"),
+    (np.uint64(2**63) + np.arange(10, dtype=np.uint64), "holds 9223372036854775808 and 9223372036854775809 as one number"),
+    (np.array([7, 2**53 + 1]), "holds 9007199254740993 as 9007199254740992"),
+], ids=["int64", "uint64", "one"])
+def test_integers_beyond_double_precision_are_a_warning(caplog, values, text):
+    easypbr.as_mesh({"points": np.random.default_rng(0).random((len(values), 3)), "id": values})
+    assert caplog.text.count("scalars 'id' are kept as float32") == 1 and text in caplog.text
+
+
+def test_values_of_arrows_that_float32_does_not_tell_apart_are_a_warning(caplog):
+    starts = np.random.default_rng(0).random((10, 3))
+    easypbr.shapes.arrows(starts, starts, values=np.arange(10.0))
+    assert not caplog.text
+    easypbr.shapes.arrows(starts, starts, values=1.7e9 + np.arange(10) * 0.1)
+    assert caplog.text.count("scalars 'value' are kept as float32, which holds 1700000000 and 1700000000.1 as one number") == 1
+
+
 def test_intensities_that_float32_does_not_tell_apart_are_a_warning(caplog, tmp_path):
     stamps = 1.7e9 + np.linspace(0, 60, 1000)
     points = np.random.default_rng(1).random((1000, 3))

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "easypbr/core/log.h"
@@ -41,6 +42,34 @@ TEST(Rounding, TellsWhereWholeNumbersAreOthers) {
     // 2^24 is the last below which none is missing.
     EXPECT_FALSE(are_lost({16777215, 16777216}));
     EXPECT_TRUE(are_lost({16777217}));
+}
+
+/// What becomes of whole numbers of 64 bits.
+template <class Integer>
+RoundingCounts counts_of(const std::vector<Integer>& values) {
+    RoundingCounts counts;
+    for (const Integer value : values) counts.add(value);
+    return counts;
+}
+
+TEST(Rounding, OfIntegersIsSeenBeyondDoublePrecision) {
+    // 10^18 lies within 2^59 and 2^60, where numbers of double precision are 2^7 = 128 apart, of float32
+    // 2^36.
+    const int64_t id = 1'000'000'000'000'000'000;
+    const RoundingCounts ids = counts_of<int64_t>({id, id + 1, id + 2});
+    EXPECT_TRUE(ids.are_lost());
+    EXPECT_EQ(ids.text(), "holds 1000000000000000000 and 1000000000000000001 as one number");
+    EXPECT_EQ(counts_of<int64_t>({-id, -id - 1}).text(),
+              "holds -1000000000000000000 and -1000000000000000001 as one number");
+    const RoundingCounts largest = counts_of<uint64_t>({UINT64_MAX - 1, UINT64_MAX});
+    EXPECT_TRUE(largest.are_lost());
+    EXPECT_EQ(largest.text(), "holds 18446744073709551614 and 18446744073709551615 as one number");
+    // 2^60 + 2^37 has 24 bits.
+    const int64_t apart = int64_t(1) << 60, step = int64_t(1) << 37;
+    EXPECT_FALSE(counts_of<int64_t>({apart, apart + step, -apart, 5, -5, INT64_MIN}).are_lost());
+    EXPECT_FALSE(counts_of<uint64_t>({uint64_t(1) << 63, 7}).are_lost());
+    EXPECT_EQ(counts_of<int64_t>({5, 123456789}).text(), "holds 123456789 as 123456792");
+    EXPECT_TRUE(counts_of<int32_t>({123456789, 5, 123456791}).are_lost());
 }
 
 TEST(Rounding, IsOfNoMatterElsewhere) {

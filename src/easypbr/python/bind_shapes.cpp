@@ -80,10 +80,18 @@ Mesh arrows(const ArrayLike& starts, const ArrayLike& vectors, std::optional<dou
             bool strict) {
     const FieldRows from = to_field(starts, "arrows: starts"), along = to_field(vectors, "arrows: vectors");
     ArrowOptions options{.scale = scale, .radius = radius, .segments = segments, .strict = strict};
-    if (!values.is_none())
-        options.values = to_array<float, 1>(flags_as_numbers(values, "arrows: values"), {"values", 1, 1});
+    RoundingCounts rounding;
+    if (!values.is_none()) {
+        const nb::object numbers = flags_as_numbers(values, "arrows: values");
+        options.values = to_array<float, 1>(numbers, {"values", 1, 1});
+        rounding = rounding_of(numbers, {"values", 1, 1});
+    }
     if (!colors.is_none()) options.colors = to_colors(colors, {"colors", 3, 4});
-    return released([&] { return make_arrows(from, along, options); });
+    return released([&] {
+        Mesh mesh = make_arrows(from, along, options);
+        warn_of_rounding("", "value", rounding);
+        return mesh;
+    });
 }
 
 void bind_round_shapes(nb::module_& module) {

@@ -332,8 +332,7 @@ RoundingCounts rounding_of(nb::handle object, const ArrayShape& shape) {
         if constexpr (sizeof(Element) >= 4 && !std::is_same_v<Element, float>)
             parallel_chunks(size_t(layout.rows), copy_grain, [&](size_t begin, size_t end) {
                 RoundingCounts piece;
-                for (size_t row = begin; row < end; ++row)
-                    piece.add(double(data[int64_t(row) * layout.row_stride]));
+                for (size_t row = begin; row < end; ++row) piece.add(data[int64_t(row) * layout.row_stride]);
                 rounding.add(piece);
             });
     });

@@ -24,24 +24,31 @@ void warn_of_lost_values(const std::string& where, const std::string& what, cons
 
 }  // namespace
 
-void RoundingCounts::add(double value) {
-    if (!std::isfinite(value)) return;
-    const float kept = float(value);
+std::string RoundingCounts::Number::text() const {
+    if (!is_integer) return fmt::format("{}", high);
+    return high < 0 ? fmt::format("{}", int64_t(high) + low)
+                    : fmt::format("{}", uint64_t(high) + uint64_t(low));
+}
+
+void RoundingCounts::add(const Number& number, float kept) {
+    if (!std::isfinite(number.high)) return;
+    const double value = number.value();
     low_ = std::min(low_, value);
     high_ = std::max(high_, value);
-    if (value != std::floor(value) || std::abs(value) > most_exact_double)
+    if (!number.is_integer && (value != std::floor(value) || std::abs(value) > most_exact_double))
         all_whole_ = false;
-    else if (double(kept) != value && rounded_++ == 0)
-        first_rounded_ = value;
-    if (std::isfinite(previous_) && value != previous_) {
+    else if (!number.is(double(kept)) && rounded_++ == 0)
+        first_rounded_ = number, kept_rounded_ = kept;
+    if (std::isfinite(previous_.high) && number != previous_) {
         ++distinct_;
-        if (kept == float(previous_) && merged_++ == 0) first_merged_ = {previous_, value};
+        if (kept == kept_previous_ && merged_++ == 0) first_merged_ = {previous_, number};
     }
-    previous_ = value;
+    previous_ = number;
+    kept_previous_ = kept;
 }
 
 void RoundingCounts::add(const RoundingCounts& other) {
-    if (rounded_ == 0) first_rounded_ = other.first_rounded_;
+    if (rounded_ == 0) first_rounded_ = other.first_rounded_, kept_rounded_ = other.kept_rounded_;
     if (merged_ == 0) first_merged_ = other.first_merged_;
     distinct_ += other.distinct_;
     merged_ += other.merged_;
@@ -56,8 +63,9 @@ bool RoundingCounts::are_lost_neighbors() const {
 }
 
 std::string RoundingCounts::text() const {
-    if (merged_ > 0) return fmt::format("holds {} and {} as one number", first_merged_[0], first_merged_[1]);
-    return fmt::format("holds {} as {}", first_rounded_, double(float(first_rounded_)));
+    if (merged_ > 0)
+        return fmt::format("holds {} and {} as one number", first_merged_[0].text(), first_merged_[1].text());
+    return fmt::format("holds {} as {}", first_rounded_.text(), double(kept_rounded_));
 }
 
 RoundingCounts rounding_of(std::span<const double> values) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <concepts>
+#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <span>
@@ -14,7 +16,18 @@ namespace easypbr {
 /// passed over.
 class RoundingCounts {
   public:
-    void add(double value);
+    void add(double value) { add(Number{.high = value}, float(value)); }
+    /// The same, exact beyond the whole numbers of double precision, too.
+    template <std::integral Integer>
+    void add(Integer value) {
+        if constexpr (sizeof(Integer) < 8)
+            add(double(value));
+        else {
+            // 53 bits, which double precision holds, and 11.
+            const Integer low = value & Integer{0x7ff};
+            add(Number{double(Integer(value - low)), int(low), true}, float(value));
+        }
+    }
     /// Joins what was counted of other numbers.
     void add(const RoundingCounts& other);
 
@@ -27,6 +40,19 @@ class RoundingCounts {
     std::string text() const;
 
   private:
+    /// Exactly: the sum of both.
+    struct Number {
+        double high;
+        int low = 0;
+        bool is_integer = false;
+
+        double value() const { return high + low; }
+        bool is(double other) const { return other - high == low; }
+        bool operator==(const Number& other) const { return high == other.high && low == other.low; }
+        std::string text() const;
+    };
+
+    void add(const Number& number, float kept);
     bool are_lost_ids() const { return all_whole_ && rounded_ > 0; }
     bool are_lost_neighbors() const;
 
@@ -34,9 +60,11 @@ class RoundingCounts {
     size_t rounded_ = 0;                ///< whole numbers that float32 has not
     bool all_whole_ = true;
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
-    double previous_ = std::numeric_limits<double>::quiet_NaN();
-    double first_rounded_ = 0;
-    std::array<double, 2> first_merged_{};
+    Number previous_{.high = std::numeric_limits<double>::quiet_NaN()};
+    float kept_previous_ = 0;
+    Number first_rounded_{.high = 0};
+    float kept_rounded_ = 0;
+    std::array<Number, 2> first_merged_{};
 };
 
 /// The counts of one scalar field, joined by the threads that read its pieces.
