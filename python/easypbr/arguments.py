@@ -1,6 +1,7 @@
 """Arguments that several functions take, checked with a message of ours instead of the binding's."""
 
 import operator
+from collections.abc import Sequence
 from typing import Any
 
 from . import _easypbr
@@ -29,3 +30,11 @@ def real_of(name: str, value: Any, what: str = "a number") -> float:
         raise ArgumentError(f"{name}: expected {what}, got {value!r}") from None
     except OverflowError:
         raise ArgumentError(f"{name}: expected {what} in the range of float64, got a larger number") from None
+
+
+def chosen(name: str, value: Any, choices: Sequence[str]) -> str:
+    """The one of the choices that a text is, in any case."""
+    found = value.lower() if isinstance(value, str) else value
+    if found in choices:
+        return str(found)
+    raise ArgumentError(f"{name}: expected {', '.join(map(repr, choices[:-1]))} or {choices[-1]!r}, got {value!r}")

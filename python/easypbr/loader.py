@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from . import _easypbr
-from .errors import ArgumentError, Error
+from .arguments import chosen
+from .errors import Error
 from .tensors import check_device, eigen2tensor
 
 #: What a sample holds when no transform is given: those of these arrays that the mesh has.
@@ -35,8 +36,7 @@ class MeshLoader:
         device: str = "cpu",
         on_error: str = "raise",
     ) -> None:
-        if on_error not in ("raise", "skip"):
-            raise ArgumentError(f"on_error: expected 'raise' or 'skip', got '{on_error}'")
+        on_error = chosen("on_error", on_error, ("raise", "skip"))
         if device != "cpu":
             check_device(device)
         self.paths = [os.fspath(path) for path in paths]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
+from .arguments import chosen
 from .cameras import set_camera
 from .errors import ArgumentError, UnknownNameError
 from .scene import scene_of
@@ -185,9 +186,7 @@ def _set_background(view: Viewer, background: Any) -> None:
 
 
 def _traces_paths(mode: Any) -> bool:
-    if mode not in ("raster", "path"):
-        raise ArgumentError(f"render(): mode: expected 'raster' or 'path', got {mode!r}")
-    return bool(mode == "path")
+    return chosen("render(): mode", mode, ("raster", "path")) == "path"
 
 
 def _full_name(name: str) -> str:

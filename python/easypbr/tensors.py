@@ -49,11 +49,11 @@ def _plain(array: Any) -> Any:
 
 def converter(name: str, device: str = "cpu") -> Callable[..., Any]:
     """A function from numpy arrays to those of "numpy" or "torch", without a copy."""
-    if name == "numpy":
+    if name.lower() == "numpy":
         if device != "cpu":
             raise ArgumentError(f"device: numpy's arrays are the CPU's: expected as_='torch' with device '{device}'")
         return lambda array: array
-    if name == "torch":
+    if name.lower() == "torch":
         return _torch().from_numpy
     raise ArgumentError(f"as_: expected 'numpy' or 'torch', got '{name}'")
 

@@ -382,7 +382,7 @@ def test_traced_paths_need_no_filtered_environment(environment, box, tmp_path):
     """The cache holds filtered environments: path tracing makes none, the split sum of a rasterised image one."""
     cache = tmp_path / "cache"
     for mode, entries in (("path", 0), ("raster", 1)):
-        subprocess.run([BINARY, "render", box, "-o", "out.png", "--size", "32x24", "--mode", mode], check=True, cwd=tmp_path,
+        subprocess.run([BINARY, "render", box, "-o", "out.png", "--size", "32x24", "--mode", mode.upper()], check=True, cwd=tmp_path,
                        env={**environment, "EASYPBR_CACHE_DIR": str(cache)})
         assert len(list(cache.glob("*"))) == entries, mode
 

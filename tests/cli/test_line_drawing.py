@@ -27,7 +27,7 @@ def test_a_box_has_nine_visible_edges_and_three_hidden(easypbr, box, tmp_path):
     assert (root.get("width"), root.get("height")) == ("320", "240")
     assert [title.text for title in root.iter(f"{SVG}title")] == ["box", "box"]
     assert (segments(tmp_path / "a.svg", "visible"), segments(tmp_path / "a.svg", "hidden")) == (9, 3)
-    easypbr("render", box, "-o", tmp_path / "b.svg", "--hidden-lines", "none")
+    easypbr("render", box, "-o", tmp_path / "b.svg", "--hidden-lines", "None")
     assert (segments(tmp_path / "b.svg", "visible"), segments(tmp_path / "b.svg", "hidden")) == (9, 0)
 
 

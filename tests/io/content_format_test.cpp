@@ -124,6 +124,7 @@ TEST(ContentFormat, OfBytesInMemoryIsToldToo) {
 TEST(ContentFormat, MayBeGiven) {
     const std::string points = "2\n1 2 3 7 255 128 0\n1 2 3 8 4 5 6\n";
     EXPECT_EQ(io::load_scene(through_a_pipe(points), "pipe", {.format = "pts"}).mesh.I()[1], 8);
+    EXPECT_EQ(io::load_scene(through_a_pipe(points), "pipe", {.format = "PTS"}).mesh.I()[1], 8);
     const std::string scan(32, '\0');
     EXPECT_EQ(message_of(scan),
               "pipe: its format cannot be told from its content; name it, one of gltf, glb, "

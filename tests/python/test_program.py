@@ -174,3 +174,23 @@ def test_the_command_line_can_be_interrupted(tmp_path):
     finally:
         process.kill()
     assert not (tmp_path / "a.png").exists()
+
+
+def test_one_of_a_list_is_taken_in_any_case():
+    square = ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    lines = easypbr.as_mesh({"V": square[0], "E": "LOOP"})
+    assert len(lines.E) == 4
+    np.testing.assert_array_equal(lines.to_tubes(0.1, ends="FLAT").V, lines.to_tubes(0.1, ends="flat").V)
+    images = [easypbr.render(square, size=(32, 24), mode=mode, samples=1) for mode in ("raster", "RASTER")]
+    np.testing.assert_array_equal(*images)
+    material = easypbr.Material()
+    material.alpha_mode = "Blend"
+    assert material.alpha_mode == "blend"
+    camera = easypbr.Camera()
+    camera.projection = "Orthographic"
+    assert camera.projection == "orthographic"
+    assert easypbr.MeshLoader([], on_error="SKIP").on_error == "skip"
+    with pytest.raises(easypbr.ArgumentError, match="mode: expected 'raster' or 'path', got 'RASTERS'"):
+        easypbr.render(square, mode="RASTERS")
+    with pytest.raises(easypbr.ArgumentError, match="mode: expected 'raster' or 'path', got 3"):
+        easypbr.render(square, mode=3)

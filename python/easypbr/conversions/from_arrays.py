@@ -103,11 +103,12 @@ def edges(given: Any, count: int) -> Any:
     if not isinstance(given, str):
         return given
     first = np.arange(count)
-    if given == "line":
+    shape = given.lower()
+    if shape == "line":
         return np.stack([first[:-1], first[1:]], axis=1)
-    if given == "loop":
+    if shape == "loop":
         return np.stack([first, np.roll(first, -1)], axis=1)
-    if given == "segments":
+    if shape == "segments":
         return first[: count // 2 * 2].reshape(-1, 2)
     raise ArgumentError(f"edges: expected k x 2 vertex indices, 'line', 'loop' or 'segments', got '{given}'")
 

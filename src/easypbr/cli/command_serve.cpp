@@ -59,7 +59,7 @@ void declare_serve(CLI::App& command, ServeCommand& options) {
     command
         .add_option("--codec", options.server.codec,
                     "What moving pictures are sent as: auto takes h264 where both sides have it, else jpeg")
-        ->check(CLI::IsMember({"auto", "h264", "jpeg"}))
+        ->transform(CLI::IsMember({"auto", "h264", "jpeg"}, CLI::ignore_case))
         ->option_text("auto|h264|jpeg");
     command
         .add_option("--own-views", options.server.own_views,

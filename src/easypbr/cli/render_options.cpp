@@ -71,7 +71,7 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
             "--mode", keep_mode,
             "How images are lit: raster, as frames that move, or path tracing, the "
             "default of several samples")
-        ->check(CLI::IsMember({"raster", "path"}));
+        ->transform(CLI::IsMember({"raster", "path"}, CLI::ignore_case));
 }
 
 void declare_output(CLI::App& command, RenderOptions& options) {
@@ -138,7 +138,7 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command
         .add_option("--camera-axes", options.camera_axes,
                     "Camera axes of --camera-pose: opengl (default) or opencv")
-        ->check(CLI::IsMember({"opengl", "opencv"}));
+        ->transform(CLI::IsMember({"opengl", "opencv"}, CLI::ignore_case));
     command.add_option("--turntable", options.turntable, "Record a turntable of N frames")->option_text("N");
     command.add_option("--camera-path", options.camera_path, "Record along a camera path from a JSON file")
         ->option_text("FILE");
@@ -149,12 +149,12 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command.add_option("--page-limit", options.page_limit, "Size of an HTML page at most (20)")
         ->option_text("MB");
     command.add_option("--page-format", options.page_format, "Pictures of an HTML page: webp or jpeg")
-        ->check(CLI::IsMember({"webp", "jpeg"}));
+        ->transform(CLI::IsMember({"webp", "jpeg"}, CLI::ignore_case));
     command.add_option("--page-title", options.page_title, "Title of an HTML page")->option_text("TEXT");
     command
         .add_option("--hidden-lines", options.hidden_lines,
                     "Lines of an SVG file that faces hide: none, dashed (default) or solid")
-        ->check(CLI::IsMember({"none", "dashed", "solid"}));
+        ->transform(CLI::IsMember({"none", "dashed", "solid"}, CLI::ignore_case));
     command.add_option("--fps", options.fps, "Frames per second of a recording (30)")->option_text("X");
     command.add_option("--codec", options.codec, "Video encoder by its FFmpeg name")->option_text("NAME");
     command

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/letter_case.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
@@ -60,7 +61,7 @@ Choice chosen(const char* what, const std::string& name,
               const std::vector<std::pair<std::string, Choice>>& choices) {
     std::vector<std::string> names;
     for (const auto& [known, choice] : choices) {
-        if (known == name) return choice;
+        if (same_letters(known, name)) return choice;
         names.push_back(known);
     }
     throw ArgumentError(std::string(what) + ": expected '" + names[0] + "' or '" + names[1] + "', got '" +

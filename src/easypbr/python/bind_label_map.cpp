@@ -6,6 +6,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/letter_case.h"
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/python/colormap.h"
 #include "easypbr/python/convert.h"
@@ -87,8 +88,8 @@ std::vector<LabelClass> classes_from(nb::handle names, const std::optional<std::
 }
 
 UnknownLabels unknown_from(const std::string& text) {
-    if (text == "refused") return UnknownLabels::refused;
-    if (text == "unlabelled") return UnknownLabels::unlabelled;
+    if (same_letters(text, "refused")) return UnknownLabels::refused;
+    if (same_letters(text, "unlabelled")) return UnknownLabels::unlabelled;
     throw ArgumentError(fmt::format("LabelMap unknown: expected 'refused' or 'unlabelled', got '{}'", text));
 }
 

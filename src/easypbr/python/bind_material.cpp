@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/letter_case.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
@@ -78,15 +79,15 @@ void texture_property(MaterialClass& material, const MaterialTexture& use) {
 }
 
 void set_alpha_mode(MaterialHandle& m, const std::string& mode) {
-    if (mode != "auto" && mode != "opaque" && mode != "mask" && mode != "blend")
-        throw ArgumentError(
-            fmt::format("material.alpha_mode: expected auto, opaque, mask or blend, got '{}'", mode));
-    m.change([&](Material& own) {
-        own.alpha_mode = automatic;
-        if (mode == "opaque") own.alpha_mode = AlphaMode::opaque;
-        if (mode == "mask") own.alpha_mode = AlphaMode::mask;
-        if (mode == "blend") own.alpha_mode = AlphaMode::blend;
-    });
+    using Choice = std::pair<const char*, decltype(Material::alpha_mode)>;
+    const Choice choices[] = {{"auto", automatic},
+                              {"opaque", AlphaMode::opaque},
+                              {"mask", AlphaMode::mask},
+                              {"blend", AlphaMode::blend}};
+    for (const auto& [name, alpha_mode] : choices)
+        if (same_letters(name, mode)) return m.change([&](Material& own) { own.alpha_mode = alpha_mode; });
+    throw ArgumentError(
+        fmt::format("material.alpha_mode: expected auto, opaque, mask or blend, got '{}'", mode));
 }
 
 const char* alpha_mode(const MaterialHandle& m) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/letter_case.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr {
@@ -140,11 +140,6 @@ std::vector<Rgb8> parse_colors(std::string_view text) {
 
 constexpr std::array<const char*, 8> built_in_names = {"viridis", "plasma",  "inferno", "magma",
                                                        "turbo",   "cividis", "grey",    "coolwarm"};
-
-bool same_letters(std::string_view a, std::string_view b) {
-    return std::ranges::equal(
-        a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 }  // namespace
 

@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cfloat>
 #include <cmath>
 #include <map>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/letter_case.h"
 #include "easypbr/core/named_colors.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/colormap.h"
@@ -233,11 +233,8 @@ bool is_allowed(const FieldInfo& field, const Value::Data& data) {
 
 /// A choice in any case: F3D writes axes as +Z.
 std::string spelled_as_chosen(const FieldInfo& field, const std::string& text) {
-    const auto same_letter = [](unsigned char a, unsigned char b) {
-        return std::tolower(a) == std::tolower(b);
-    };
     for (const std::string& choice : field.choices)
-        if (std::ranges::equal(choice, text, same_letter)) return choice;
+        if (same_letters(choice, text)) return choice;
     return text;
 }
 

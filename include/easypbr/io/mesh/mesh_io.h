@@ -30,7 +30,7 @@ struct LoadOptions {
     std::optional<float> crease_angle_deg = {};
     double memory_gb = 0;      ///< most that the arrays and images of the file may take; 0: three quarters of
                                ///< what the machine has left
-    std::string format = {};   ///< extension of the format that a file is in; empty: its own extension
+    std::string format = {};   ///< extension of the format that a file is in, in any case; empty: its own
     std::string variant = {};  ///< glTF: the material variant; empty: the file's own materials
     bool strict = false;       ///< points without a finite position are an error: FormatError
 };

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <span>
 
 #include "easypbr/core/error.h"
@@ -228,8 +229,15 @@ uint64_t limit_of(const LoadOptions& options) {
     return uint64_t(std::min(options.memory_gb, 1e9) * 1e9);
 }
 
+/// The format of the options as an extension; empty: they name none.
+std::string format_of(const LoadOptions& options) {
+    std::string format = options.format;
+    for (char& letter : format) letter = char(std::tolower(static_cast<unsigned char>(letter)));
+    return format;
+}
+
 LoadedScene read_scene(const fs::path& path, const LoadOptions& options) {
-    const std::string format = options.format.empty() ? extension_of(path) : options.format;
+    const std::string format = options.format.empty() ? extension_of(path) : format_of(options);
     if (is_gltf(format)) return load_gltf(path, options.variant);
     if (readers().contains(format)) {
         const FileBytes bytes(path);
@@ -262,7 +270,7 @@ LoadedScene load_content(const Source& source, const LoadOptions& options) {
     const MemoryScope memory(source.path.string(), limit_of(options));
     if (source.bytes.empty())
         throw FormatError(fmt::format("{}: there is nothing to read", source.path.string()));
-    const std::string format = options.format.empty() ? format_of_content(source.bytes) : options.format;
+    const std::string format = options.format.empty() ? format_of_content(source.bytes) : format_of(options);
     if (!is_gltf(format) && !readers().contains(format)) fail_format(source.path, format);
     LoadedScene scene = decode(source, format, options);
     finish(scene, source.path, options);
