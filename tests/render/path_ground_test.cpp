@@ -153,7 +153,7 @@ TEST(PathGround, APlaneFades) {
     s.ground.radius = 3.1157f / 0.7f;
     s.camera.position = Vec3d(0, -0.25882, 4.6);
     s.camera.target = Vec3d(0, -0.25882, 0);
-    s.camera.fov_y_deg = 0.5f;
+    s.camera.fov_y_deg = 1;
     EXPECT_NEAR(mean_of(session, 64), 0.5, 0.02);
 }
 
