@@ -42,7 +42,7 @@ class Program:
         # Whoever starts the tests in the background switches interrupts off, for their children too.
         self.process = subprocess.Popen([sys.executable, "-c", code, *map(str, arguments)], env=display.environment,
                                         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def until_frame(self, number):
         for line in self.process.stdout:
@@ -50,9 +50,9 @@ class Program:
                 return
         raise AssertionError(self.process.stderr.read())
 
-    def rest(self):
-        """What it prints until its end, which must be an orderly one."""
-        out, error = self.process.communicate(timeout=60)
+    def rest(self, told=None):
+        """What it prints until its end, which must be an orderly one. `told`: what it reads."""
+        out, error = self.process.communicate(told, timeout=60)
         assert self.process.returncode == 0, f"{self.process.returncode}: {error}"
         return out, error
 
@@ -125,6 +125,31 @@ def test_a_display_that_goes_away_is_an_error_and_loses_nothing(tmp_path, how):
     assert "again: the display" in out
     assert "XIO" not in error
     assert 0 <= frames_of(tmp_path / "out.mp4") - told_frames(out, 5) <= 1
+
+
+WITHOUT_WINDOW = """
+import sys, easypbr
+view = easypbr.Viewer((160, 120))
+view.update()
+view.close()
+print(1, flush=True)
+sys.stdin.readline()
+try:
+    easypbr.Viewer((160, 120)).update()
+except easypbr.ContextError as error:
+    print("ended by", error, flush=True)
+"""
+
+
+def test_a_display_that_went_away_while_no_window_was_open_is_an_error(tmp_path):
+    with Display(tmp_path) as display:
+        program = Program(display, WITHOUT_WINDOW)
+        program.until_frame(1)
+        display._processes[0].terminate()
+        display._processes[0].wait()
+        out, error = program.rest("\n")
+    assert "ended by the display that the window was on has gone away" in out
+    assert "XIO" not in error
 
 
 def test_an_exception_in_a_callback_does_not_harm_a_recording(window, tmp_path, capsys):

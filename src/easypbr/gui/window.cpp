@@ -132,6 +132,8 @@ struct WindowCallbacks {
 Window::Window(const std::string& title, Vec2i size) {
     const GlfwLock lock;
     const Glfw& f = GlfwLock::functions();
+    // Xlib tells of a broken connection when it next reads; glfwCreateWindow() would go on without one.
+    f.glfwPollEvents();
     require_display();
     f.glfwDefaultWindowHints();
     // EGL as everywhere else in the library, so that one process never mixes two ways to make contexts.
