@@ -156,6 +156,18 @@ def test_keys_toggle_each_panel(window):
     assert not window.state["show_keys"] and window.view.is_open
 
 
+def test_a_key_that_is_held_acts_once(window):
+    repeats = []
+    window.view.on_event(lambda event: repeats.append(event.repeat), kind="key_down")
+    window.mouse("mousemove", *MIDDLE)
+    window.send("keydown", "k")
+    wait_until(lambda: window.update() and len(repeats) > 3)
+    window.send("keyup", "k")
+    window.update(4)
+    assert not repeats[0] and all(repeats[1:])
+    assert window.state["path_keys"] == 1
+
+
 def test_typing_into_a_panel_is_not_for_the_camera(window):
     before = window.view.camera.position.copy()
     window.mouse("mousemove", 60, 120, "mousedown", 1)

@@ -37,6 +37,7 @@ struct InputEvent {
     Vec2d position{0, 0};  ///< pixels of the picture, (0, 0) is the top left corner
     MouseButton button = MouseButton::left;
     int key = 0;
+    bool repeat = false;                               ///< key_down and text: of a key that is held
     bool shift = false, control = false, alt = false;  ///< held, after the event
     Vec2d scroll{0, 0};                                ///< y: positive away from the person
     uint32_t code = 0;

@@ -34,7 +34,7 @@ CameraControl::Wish CameraControl::handle(const InputEvent& event, ViewPoint& vi
             break;
         case Kind::key_down:
             if (event.control || event.alt) break;
-            if (event.key == 'F') wish.fit = true;
+            if (event.key == 'F' && !event.repeat) wish.fit = true;
             keys_.insert(event.key);
             break;
         case Kind::key_up:

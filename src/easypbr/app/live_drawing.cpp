@@ -107,17 +107,20 @@ void LiveDrawing::open(const std::vector<std::string>& paths) {
 
 bool LiveDrawing::shortcut(const InputEvent& event) {
     if (event.kind != Kind::key_down) return false;
-    if (event.control) return control_shortcut(event.key, event.shift), true;
+    if (event.control) return control_shortcut(event), true;
+    if (event.repeat) return false;
     if (event.key == key::escape) return wishes_.close = true;
     if (event.key != 'K') return false;
     if (!handlers_.guarded([&] { add_path_key(); })) handlers_.forget_failure();
     return true;
 }
 
-void LiveDrawing::control_shortcut(int key, bool shift) {
+void LiveDrawing::control_shortcut(const InputEvent& event) {
+    const int key = event.key;
     try {
-        if (key == 'Z' && !shift) edits_.undo();
-        if (key == 'Y' || (key == 'Z' && shift)) edits_.redo();
+        if (key == 'Z' && !event.shift) edits_.undo();
+        if (key == 'Y' || (key == 'Z' && event.shift)) edits_.redo();
+        if (event.repeat) return;
         if (key == 'S') wishes_.save = true;
         if (key == 'C') {
             clipboard_.write(camera_text(session_, size_));

@@ -113,7 +113,8 @@ class LiveDrawing {
     /// Offers an event to the program's handlers(). Returns whether one of them took it.
     bool offer(const InputEvent& event);
     /// Acts on an event: the camera moves, a click selects, files that were dropped are opened, Ctrl+Z,
-    /// Ctrl+Shift+Z, Ctrl+Y, S, C, V and K do what docs/viewer.md says, Escape wishes to close.
+    /// Ctrl+Shift+Z, Ctrl+Y, S, C, V and K do what docs/viewer.md says, Escape wishes to close. Of keys that
+    /// repeat only undo and redo count.
     void handle(const InputEvent& event);
     /// Lets the time of the frame pass for camera, path and notifications, then takes a step of the picture.
     /// Returns whether it has changed.
@@ -168,7 +169,7 @@ class LiveDrawing {
 
     bool offer_to_handlers(const InputEvent& event);
     bool shortcut(const InputEvent& event);
-    void control_shortcut(int key, bool shift);
+    void control_shortcut(const InputEvent& event);
     void move_camera(const InputEvent& event);
     void open(const std::vector<std::string>& paths);
     void move_along_path(double seconds);

@@ -157,6 +157,7 @@ void LiveView::handle(const InputEvent& event) {
 }
 
 bool LiveView::shortcut(const InputEvent& event) {
+    if (event.repeat) return false;
     PanelLayout& panels = state_.panels;
     if (event.kind == Kind::text && event.code == '?') return panels.keys = !panels.keys, true;
     if (event.kind != Kind::key_down || event.control) return false;

@@ -117,8 +117,13 @@ struct WindowCallbacks {
         event.key = action == GLFW_RELEASE
                         ? codes.up(key)
                         : codes.down(key, glfw().glfwGetKeyName(key, scancode), mods & GLFW_MOD_CONTROL);
+        event.repeat = of(window).repeats_ = action == GLFW_REPEAT;
     }
-    static void text(GLFWwindow* window, unsigned code) { add(window, Kind::text).code = code; }
+    static void text(GLFWwindow* window, unsigned code) {
+        InputEvent& event = add(window, Kind::text);
+        event.code = code;
+        event.repeat = of(window).repeats_;  // The key's own event comes first.
+    }
     static void drop(GLFWwindow* window, int count, const char** paths) {
         add(window, Kind::drop).paths.assign(paths, paths + count);
     }

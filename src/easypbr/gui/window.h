@@ -59,6 +59,7 @@ class Window {
     std::vector<app::InputEvent> events_;
     KeyCodes key_codes_;
     int modifiers_ = 0;             ///< GLFW's bits, after the last event
+    bool repeats_ = false;          ///< the last key's event was a repetition
     std::optional<Vec2d> pointer_;  ///< at the last event, in screen coordinates
     bool needs_present_ = true;
     bool is_shown_ = false;

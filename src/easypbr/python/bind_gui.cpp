@@ -103,6 +103,8 @@ void bind_event(nb::module_& module) {
         .def_prop_ro(
             "key", key_name,
             "For 'key_down' and 'key_up': a capital letter, a digit, 'F1', 'space', 'escape', 'left', ...")
+        .def_ro("repeat", &InputEvent::repeat,
+                "For 'key_down' and 'text': whether the event is a repetition of a key that is held.")
         .def_ro("shift", &InputEvent::shift)
         .def_ro("control", &InputEvent::control)
         .def_ro("alt", &InputEvent::alt)

@@ -1,0 +1,107 @@
+// Keys that are held, and input that comes at once after a slow frame, without a window.
+#include <gtest/gtest.h>
+
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/gui/live_view.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::gui::input_test {
+namespace {
+
+using app::InputEvent;
+using Kind = InputEvent::Kind;
+namespace k = app::key;
+
+const Vec2i size(900, 600);
+
+class Input : public testing::Test {
+  protected:
+    Input() : session_(box_scene()) {
+        session_.settings().image.samples = 1;
+        session_.set_view_point({Camera::look_at(Vec3d(0, 0, 6), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
+        settle();
+    }
+
+    static Scene box_scene() {
+        Scene scene;
+        scene.show(make_box({1, 1, 1}), "box");
+        return scene;
+    }
+    void step(const std::vector<InputEvent>& events = {}, double seconds = 0.02) {
+        view_.update(events, size, 1, seconds);
+    }
+    void settle() {
+        step();
+        for (int i = 0; i < 100 && view_.is_busy(); ++i) step();
+        EXPECT_FALSE(view_.is_busy());
+    }
+    static InputEvent at(Kind kind, Vec2d position) {
+        InputEvent event;
+        event.kind = kind;
+        event.position = position;
+        return event;
+    }
+    static InputEvent key(int code, bool repeat = false, Kind kind = Kind::key_down) {
+        InputEvent event;
+        event.kind = kind;
+        event.key = code;
+        event.repeat = repeat;
+        return event;
+    }
+    static InputEvent up(int code) { return key(code, false, Kind::key_up); }
+    static InputEvent text(char letter, bool repeat = false) {
+        InputEvent event;
+        event.kind = Kind::text;
+        event.code = uint32_t(letter);
+        event.repeat = repeat;
+        return event;
+    }
+    Vec3d camera() { return session_.view_point(size).camera.position(); }
+
+    app::Session session_;
+    LiveView view_{session_};
+};
+
+TEST_F(Input, AKeyThatIsHeldActsOnce) {
+    // An even number of repetitions and an odd one.
+    for (const int repetitions : {2, 3}) {
+        const PanelLayout before = view_.state().panels;
+        std::vector<InputEvent> events = {key('H'), key(k::f1), key('K'), text('?')};
+        for (int i = 0; i < repetitions; ++i)
+            for (const InputEvent& event :
+                 {key('H', true), key(k::f1, true), key('K', true), text('?', true)})
+                events.push_back(event);
+        step(events);
+        EXPECT_NE(view_.state().panels.shown, before.shown);
+        EXPECT_NE(view_.state().panels.open[0], before.open[0]);
+        EXPECT_NE(view_.state().panels.keys, before.keys);
+        step({up('H'), up(k::f1), up('K')});
+    }
+    EXPECT_EQ(view_.drawing().path().editor.keys().size(), 2u);
+}
+
+TEST_F(Input, EscapeThatIsHeldClosesTheListAndNotTheWindow) {
+    step({text('?')});
+    ASSERT_TRUE(view_.state().panels.keys);
+    step({key(k::escape)});
+    step({key(k::escape, true)});
+    step({key(k::escape, true), up(k::escape)});
+    EXPECT_FALSE(view_.state().panels.keys);
+    EXPECT_FALSE(view_.wants_to_close());
+    step({key(k::escape)});
+    EXPECT_TRUE(view_.wants_to_close());
+}
+
+TEST_F(Input, UndoRepeats) {
+    for (const int samples : {2, 3}) {
+        session_.settings().image.samples = samples;
+        settle();
+    }
+    InputEvent undo = key('Z'), again = key('Z', true);
+    undo.control = again.control = true;
+    step({undo, again});
+    EXPECT_EQ(session_.settings().image.samples, 1);
+}
+
+}  // namespace
+}  // namespace easypbr::gui::input_test
