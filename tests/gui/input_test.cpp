@@ -1,6 +1,7 @@
 // Keys that are held, and input that comes at once after a slow frame, without a window.
 #include <gtest/gtest.h>
 
+#include "easypbr/app/user_panels.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/scene/settings.h"
@@ -101,6 +102,64 @@ TEST_F(Input, UndoRepeats) {
     undo.control = again.control = true;
     step({undo, again});
     EXPECT_EQ(session_.settings().image.samples, 1);
+}
+
+class FieldInput : public Input {
+  protected:
+    FieldInput() {
+        view_.add_panel("Training", [this](app::Widgets& ui) { ui.text_field("name", name_); });
+        settle();
+        const auto found = view_.places().find("Training/name");
+        EXPECT_NE(found, view_.places().end());
+        if (found != view_.places().end()) field_ = found->second.center();
+    }
+    void click(Vec2d where) {
+        step({at(Kind::move, where)});
+        step({at(Kind::press, where)});
+        step({at(Kind::release, where)});
+        settle();
+    }
+
+    std::string name_;
+    Vec2d field_{0, 0};
+    const Vec2d background_{450, 560};
+};
+
+TEST_F(FieldInput, AFlightEndsWithItsKeyThoughAFieldIsTypedInto) {
+    const Vec3d before = camera();
+    step({key('W')});
+    step();
+    EXPECT_LT(camera().z(), before.z());
+    step({at(Kind::move, field_), at(Kind::press, field_), at(Kind::release, field_)});
+    step();
+    step({up('W')});
+    const Vec3d after = camera();
+    settle();
+    EXPECT_EQ(camera(), after);
+    // And a key that goes down for the field never flies, whoever has it when it repeats and comes up.
+    step({key('W'), text('w')});
+    step();
+    EXPECT_EQ(name_, "w");
+    step({at(Kind::move, background_), at(Kind::press, background_), at(Kind::release, background_)});
+    step();
+    step({key('W', true)});
+    step({up('W')});
+    settle();
+    EXPECT_EQ(camera(), after);
+}
+
+TEST_F(FieldInput, HandlersSeeAKeyComeUpThatTheySawGoDown) {
+    std::vector<Kind> seen;
+    view_.on_event([&](const InputEvent& event) {
+        if (event.key == 'P') seen.push_back(event.kind);
+        return false;
+    });
+    step({key('P')});
+    click(field_);
+    step({up('P')});
+    EXPECT_EQ(seen, (std::vector<Kind>{Kind::key_down, Kind::key_up}));
+    step({key('P'), up('P')});
+    EXPECT_EQ(seen.size(), 2u);
 }
 
 }  // namespace

@@ -70,6 +70,19 @@ def test_events_reach_functions_and_may_be_kept_from_the_viewer(window):
     assert not window.state["show_panels"]
 
 
+def test_a_flight_ends_when_its_key_comes_up_in_a_field(window):
+    window.view.add_panel("Training", lambda ui: ui.text_field("name", ""))
+    window.settle()
+    before = window.view.camera.position.copy()
+    window.mouse("keydown", "w")
+    assert np.any(window.view.camera.position != before)
+    click(window, "Training/name")
+    window.mouse("keyup", "w")
+    after = window.view.camera.position.copy()
+    window.update(10)
+    assert np.array_equal(window.view.camera.position, after)
+
+
 def test_a_callback_may_close_the_window(window):
     window.view.on_event(lambda event: window.view.close(), kind="key_down")
     window.display.run("xdotool", "key", "k")

@@ -191,6 +191,21 @@ void Gui::take_button(const app::InputEvent& event) {
     pressed_[button] |= down_[button];
 }
 
+bool Gui::take_key(const app::InputEvent& event) {
+    using Kind = app::InputEvent::Kind;
+    keys_.push_back(event);
+    if (event.kind == Kind::key_up) return owned_keys_.erase(event.key) > 0;
+    if (event.kind == Kind::text || event.repeat) return wants_keys_ || owned_keys_.contains(event.key);
+    const bool closes = event.key == app::key::escape && (popup_ || active_);
+    if (closes) closes_popups_ = popup_;
+    const bool own = closes || wants_keys_;
+    if (own)
+        owned_keys_.insert(event.key);
+    else
+        owned_keys_.erase(event.key);
+    return own;
+}
+
 bool Gui::take(const app::InputEvent& event) {
     using Kind = app::InputEvent::Kind;
     const GuiScope scope(context_);
@@ -216,20 +231,14 @@ bool Gui::take(const app::InputEvent& event) {
             return over_panel(event.position);
         case Kind::key_down:
         case Kind::key_up:
-            keys_.push_back(event);
-            if (event.kind == Kind::key_down && event.key == app::key::escape && (popup_ || active_)) {
-                closes_popups_ = popup_;
-                return true;
-            }
-            return wants_keys_;
         case Kind::text:
-            keys_.push_back(event);
-            return wants_keys_;
+            return take_key(event);
         case Kind::focus_lost:
             down_ = pressed_ = {};
             keys_.clear();
             io.ClearInputKeys();
             owned_.clear();
+            owned_keys_.clear();
             return false;
         default:
             return false;

@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ class Gui {
     Gui& operator=(const Gui&) = delete;
 
     /// Tells the GUI what happened. Returns whether the event is its own: over a panel, or typed into a
-    /// field. Escape is its own while a menu or list is open, which it closes, and while is_active().
+    /// field. Escape is its own while a menu or list is open, which it closes, and while is_active(). A
+    /// button or key is its own until it comes up when it was as it went down.
     bool take(const app::InputEvent& event);
     /// The pointer drags a slider or the like, or a field is typed into.
     bool is_active() const { return active_; }
@@ -74,6 +76,7 @@ class Gui {
     Theme theme_ = Theme::dark;
     bool over_panel(Vec2d position) const;
     void take_button(const app::InputEvent& event);
+    bool take_key(const app::InputEvent& event);
 
     bool wants_keys_ = false, active_ = false, popup_ = false;
     bool closes_popups_ = false;               ///< in the next frame
@@ -82,6 +85,7 @@ class Gui {
     /// A click within one frame is held down for all of it, or the GUI would not see it.
     std::array<bool, 3> down_{}, pressed_{};
     std::vector<app::MouseButton> owned_;  ///< buttons that went down over a panel
+    std::set<int> owned_keys_;             ///< keys that went down for the GUI
     std::deque<app::InputEvent> keys_;     ///< keys and letters that no frame has had yet
     FieldClipboard field_clipboard_;
 };
