@@ -104,6 +104,54 @@ TEST_F(Input, UndoRepeats) {
     EXPECT_EQ(session_.settings().image.samples, 1);
 }
 
+class HandleInput : public Input {
+  protected:
+    HandleInput() {
+        view_.drawing().selection().object = "box";
+        settle();
+    }
+    Vec3d moved() { return session_.scene().get("box").T_parent_mesh().translation(); }
+    /// What 60 pixels to the right are at the box.
+    double sixty_pixels() {
+        const Camera camera = session_.view_point(size).camera;
+        return point_at(camera, {60, 0}, size, 6).x() - point_at(camera, {0, 0}, size, 6).x();
+    }
+
+    // The x handle goes 90 pixels to the right of the middle.
+    const Vec2d on_{510, 300}, off_{480, 420}, by_{60, 0};
+};
+
+// After a slow frame the pointer has moved and a button is down before anything of it was drawn.
+TEST_F(HandleInput, AHandleIsLookedForWhereTheButtonWentDown) {
+    const Vec3d before = camera();
+    step({at(Kind::move, off_)});
+    step({at(Kind::move, on_), at(Kind::press, on_)});
+    step({at(Kind::move, on_ + by_)});
+    step({at(Kind::release, on_ + by_)});
+    settle();
+    EXPECT_NEAR(moved().x(), sixty_pixels(), 1e-6);  // positions of a few units, rounded to float once
+    EXPECT_LT((camera() - before).norm(), 1e-12);
+}
+
+TEST_F(HandleInput, AButtonThatGoesDownBesideAHandleIsTheCameras) {
+    const Vec3d before = camera();
+    step({at(Kind::move, on_)});
+    step({at(Kind::move, off_), at(Kind::press, off_)});
+    step({at(Kind::move, off_ + by_)});
+    step({at(Kind::release, off_ + by_)});
+    EXPECT_EQ(moved(), Vec3d(0, 0, 0));
+    EXPECT_GT((camera() - before).norm(), 0.5);
+}
+
+TEST_F(HandleInput, ADragThatIsOverWithinOneFrameEndsWhereTheButtonCameUp) {
+    step({at(Kind::move, on_), at(Kind::press, on_), at(Kind::move, on_ + by_), at(Kind::release, on_ + by_),
+          at(Kind::move, off_)});
+    settle();
+    EXPECT_NEAR(moved().x(), sixty_pixels(), 1e-6);  // positions of a few units, rounded to float once
+    // No click: what is selected stays.
+    EXPECT_EQ(view_.drawing().selection().object, "box");
+}
+
 class FieldInput : public Input {
   protected:
     FieldInput() {

@@ -308,9 +308,9 @@ float Gui::menu_height(const GuiState& state) {
 
 void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
     state.image_value.clear();
-    if (state.panels.shown) draw_path(state);
-    state.manipulator.has_pointer = state.panels.shown && manipulate(state);
     if (state.panels.shown) {
+        draw_path(state);
+        draw_handles(state);
         menu_bar(state);
         draw_columns(state);
         status_line(state);

@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/interrupt.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gui/panels.h"
 
 namespace easypbr::gui {
 namespace {
@@ -150,10 +151,7 @@ void LiveView::handle(const InputEvent& event) {
     const bool own = event.kind != Kind::drop && gui_.take(event);
     if (own) return live_.leave(event);
     if (live_.offer(event) || shortcut(event)) return;
-    // The release of a button that the manipulator holds is the camera's as well: it forgets nothing by it.
-    const bool on_handle =
-        state_.manipulator.has_pointer && event.kind == Kind::press && event.button == app::MouseButton::left;
-    if (!on_handle) live_.handle(event);
+    if (!drag_handle(state_, event)) live_.handle(event);
 }
 
 bool LiveView::shortcut(const InputEvent& event) {

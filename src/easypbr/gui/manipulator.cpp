@@ -28,7 +28,7 @@ struct Subject {
 };
 
 struct View {
-    const Camera& camera;
+    Camera camera;
     Vec2i size;
 
     std::optional<ImVec2> project(const Vec3d& point) const {
@@ -44,8 +44,8 @@ struct View {
     }
 };
 
-float distance_to_segment(ImVec2 p, ImVec2 a, ImVec2 b) {
-    const Vec2 ab(b.x - a.x, b.y - a.y), ap(p.x - a.x, p.y - a.y);
+float distance_to_segment(Vec2 p, ImVec2 a, ImVec2 b) {
+    const Vec2 ab(b.x - a.x, b.y - a.y), ap(p.x() - a.x, p.y() - a.y);
     const float t = std::clamp(ap.dot(ab) / std::max(ab.squaredNorm(), 1e-6f), 0.0f, 1.0f);
     return (ap - t * ab).norm();
 }
@@ -112,45 +112,77 @@ std::optional<Subject> selected_light(GuiState& state) {
     return subject;
 }
 
-/// Points of a handle on the screen: a line for moving and scaling, a ring for turning.
-std::vector<ImVec2> handle_points(const View& view, const Vec3d& centre, int axis, Handle handle,
-                                  double length) {
-    std::vector<ImVec2> points;
-    const auto add = [&](const Vec3d& point) {
-        if (const auto p = view.project(point)) points.push_back(*p);
-    };
-    if (handle != Handle::turn) {
-        add(centre);
-        add(centre + length * Vec3d::Unit(axis));
+/// The handles of what is selected, as they are seen in the picture that is shown.
+struct Handles {
+    View view;
+    Subject subject;
+    Handle handle;
+    float scale;  ///< of the screen
+
+    /// On the screen: a line for moving and scaling, a ring for turning.
+    std::vector<ImVec2> points(int axis) const {
+        const double length = view.length_of(length_pixels * scale, subject.centre);
+        std::vector<ImVec2> points;
+        const auto add = [&](const Vec3d& point) {
+            if (const auto p = view.project(point)) points.push_back(*p);
+        };
+        if (handle != Handle::turn) {
+            add(subject.centre);
+            add(subject.centre + length * Vec3d::Unit(axis));
+            return points;
+        }
+        const Vec3d u = Vec3d::Unit((axis + 1) % 3), v = Vec3d::Unit((axis + 2) % 3);
+        for (int i = 0; i <= ring_points; ++i) {
+            const double angle = 2 * pi * i / ring_points;
+            add(subject.centre + length * (std::cos(angle) * u + std::sin(angle) * v));
+        }
         return points;
     }
-    const Vec3d u = Vec3d::Unit((axis + 1) % 3), v = Vec3d::Unit((axis + 2) % 3);
-    for (int i = 0; i <= ring_points; ++i) {
-        const double angle = 2 * pi * i / ring_points;
-        add(centre + length * (std::cos(angle) * u + std::sin(angle) * v));
+    /// The axis of the handle at a pixel; -1: none.
+    int at(Vec2 pixel) const {
+        int nearest = -1;
+        float least = grab_pixels * scale;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::vector<ImVec2> p = points(axis);
+            for (size_t i = 0; i + 1 < p.size(); ++i)
+                if (const float d = distance_to_segment(pixel, p[i], p[i + 1]); d < least) {
+                    least = d;
+                    nearest = axis;
+                }
+        }
+        return nearest;
     }
-    return points;
+};
+
+/// Nothing while nothing that can be moved is selected.
+std::optional<Handles> handles_of(GuiState& state) {
+    const auto& resolved = state.live.picture().resolved();
+    if (!resolved) return {};
+    const bool has_light = !state.selection().light.empty();
+    const std::optional<Subject> subject = has_light ? selected_light(state) : selected_object(state);
+    if (!subject) return {};
+    const Handle handle = subject->only_moves ? Handle::move : state.manipulator.handle;
+    return Handles{{resolved->camera, state.screen.size}, *subject, handle, state.screen.scale};
 }
 
-Eigen::Affine3d change_of(const View& view, const HandleDrag& drag, Handle handle, ImVec2 pointer) {
+Eigen::Affine3d change_of(const View& view, const HandleDrag& drag, Handle handle, Vec2d pointer) {
     const Vec3d axis = Vec3d::Unit(drag.axis);
     const auto centre = view.project(drag.centre);
     Eigen::Affine3d change = Eigen::Affine3d::Identity();
     if (!centre) return change;
     if (handle == Handle::turn) {
-        const auto angle = [&](ImVec2 p) { return std::atan2(p.y - centre->y, p.x - centre->x); };
+        const auto angle = [&](const Vec2d& p) { return std::atan2(p.y() - centre->y, p.x() - centre->x); };
         // Seen against the axis, the screen's clockwise is the axis' own sense.
         const double towards = axis.dot(view.camera.position() - drag.centre) > 0 ? -1 : 1;
-        const double turn = towards * double(angle(pointer) - angle(ImVec2(drag.from.x(), drag.from.y())));
+        const double turn = towards * (angle(pointer) - angle(drag.from));
         return Eigen::Translation3d(drag.centre) * Eigen::AngleAxisd(turn, axis) *
                Eigen::Translation3d(-drag.centre);
     }
     const double unit = view.length_of(length_pixels, drag.centre);
     const auto end = view.project(drag.centre + unit * axis);
     if (!end) return change;
-    const Vec2 line(end->x - centre->x, end->y - centre->y);
-    const Vec2 by(pointer.x - drag.from.x(), pointer.y - drag.from.y());
-    const double steps = double(by.dot(line)) / std::max(double(line.squaredNorm()), 1.0);
+    const Vec2d line(end->x - centre->x, end->y - centre->y);
+    const double steps = (pointer - drag.from).dot(line) / std::max(line.squaredNorm(), 1.0);
     if (handle == Handle::move) {
         change.translation() = steps * unit * axis;
         return change;
@@ -183,49 +215,52 @@ void draw_handle(const std::vector<ImVec2>& points, ImU32 color, Handle handle, 
                            ImVec2(base.x() - across.x(), base.y() - across.y()), color);
 }
 
+/// Returns whether there is a handle at the pixel.
+bool begin_drag(GuiState& state, Vec2d pixel) {
+    const std::optional<Handles> handles = handles_of(state);
+    const int axis = handles ? handles->at(pixel.cast<float>()) : -1;
+    if (axis < 0) return false;
+    state.manipulator.drag = {axis, pixel, handles->subject.centre, handles->subject.apply};
+    return true;
+}
+
 }  // namespace
 
-bool manipulate(GuiState& state) {
+bool drag_handle(GuiState& state, const app::InputEvent& event) {
+    using Kind = app::InputEvent::Kind;
     HandleDrag& drag = state.manipulator.drag;
-    if (!state.live.picture().resolved()) return false;
-    const bool has_light = !state.selection().light.empty();
-    const std::optional<Subject> subject = has_light ? selected_light(state) : selected_object(state);
-    if (!subject) {
-        drag.axis = -1;
-        return false;
+    const bool left = event.button == app::MouseButton::left, drags = drag.axis >= 0;
+    if (event.kind == Kind::focus_lost) drag = {};
+    if (event.kind == Kind::press && left && !drags)
+        return state.panels.shown && begin_drag(state, event.position);
+    if (!drags || (event.kind != Kind::move && !(event.kind == Kind::release && left))) return false;
+    try {
+        const std::optional<Handles> handles = handles_of(state);
+        if (handles) drag.apply(change_of(handles->view, drag, handles->handle, event.position));
+        if (!handles || event.kind == Kind::release) drag = {};
+    } catch (const Error& error) {
+        state.notify(error.what(), true);
+        drag = {};
     }
-    const View view{state.live.picture().resolved()->camera, state.screen.size};
-    const Handle handle = subject->only_moves ? Handle::move : state.manipulator.handle;
-    const double length = view.length_of(length_pixels * state.screen.scale, subject->centre);
+    return true;
+}
+
+void draw_handles(GuiState& state) {
+    HandleDrag& drag = state.manipulator.drag;
+    const std::optional<Handles> handles = handles_of(state);
+    // A button may come up unseen, in a program's handler or with the focus.
+    if (!handles || !ImGui::IsMouseDown(0)) drag = {};
+    if (!handles) return;
     const ImVec2 pointer = ImGui::GetIO().MousePos;
-    int hovered = -1;
-    float nearest = grab_pixels * state.screen.scale;
-    std::array<std::vector<ImVec2>, 3> points;
+    const bool free = !ImGui::GetIO().WantCaptureMouse && ImGui::IsMousePosValid();
+    const int hovered = free ? handles->at(Vec2(pointer.x, pointer.y)) : -1;
+    const int hot = drag.axis >= 0 ? drag.axis : hovered;
     for (int axis = 0; axis < 3; ++axis) {
-        points[size_t(axis)] = handle_points(view, subject->centre, axis, handle, length);
-        const auto& p = points[size_t(axis)];
-        for (size_t i = 0; i + 1 < p.size(); ++i)
-            if (const float d = distance_to_segment(pointer, p[i], p[i + 1]); d < nearest) {
-                nearest = d;
-                hovered = axis;
-            }
-    }
-    const bool free = !ImGui::GetIO().WantCaptureMouse;
-    if (drag.axis < 0 && hovered >= 0 && free && ImGui::IsMouseClicked(0))
-        drag = {hovered, Vec2(pointer.x, pointer.y), subject->centre, subject->apply};
-    if (!ImGui::IsMouseDown(0)) drag.axis = -1;
-    if (drag.axis >= 0) try {
-            drag.apply(change_of(view, drag, handle, pointer));
-        } catch (const Error& error) {
-            state.notify(error.what(), true);
-            drag.axis = -1;
-        }
-    const int hot = drag.axis >= 0 ? drag.axis : free ? hovered : -1;
-    for (int axis = 0; axis < 3; ++axis)
-        if (points[size_t(axis)].size() > 1)
-            draw_handle(points[size_t(axis)], axis == hot ? hot_color : axis_colors[axis], handle,
+        const std::vector<ImVec2> points = handles->points(axis);
+        if (points.size() > 1)
+            draw_handle(points, axis == hot ? hot_color : axis_colors[axis], handles->handle,
                         state.screen.scale);
-    return drag.axis >= 0 || (free && hovered >= 0);
+    }
 }
 
 }  // namespace easypbr::gui

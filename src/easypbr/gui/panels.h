@@ -39,8 +39,9 @@ void notifications(GuiState& state);
 /// Rows for all settings whose names begin with `prefix`.
 void settings_rows(GuiState& state, const std::string& prefix);
 
-/// Handles to move, turn or scale the selected object, or to move the selected light. Returns whether the
-/// pointer is theirs.
-bool manipulate(GuiState& state);
+/// Handles to move, turn or scale the selected object, or to move the selected light.
+void draw_handles(GuiState& state);
+/// What the pointer does to them, while the panels are shown. Returns whether the event is theirs.
+bool drag_handle(GuiState& state, const app::InputEvent& event);
 
 }  // namespace easypbr::gui

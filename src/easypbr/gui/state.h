@@ -58,8 +58,8 @@ enum class Handle { move, turn, scale };
 
 /// A drag of the manipulator, which goes on over frames.
 struct HandleDrag {
-    int axis = -1;  ///< none
-    Vec2 from{0, 0};
+    int axis = -1;     ///< none
+    Vec2d from{0, 0};  ///< the pixel
     Vec3d centre{0, 0, 0};
     std::function<void(const Eigen::Affine3d& change)> apply;  ///< to what it was when the drag began
 };
@@ -68,7 +68,6 @@ struct HandleDrag {
 struct Manipulator {
     Handle handle = Handle::move;
     HandleDrag drag;
-    bool has_pointer = false;
 };
 
 /// What the panel of the camera path shows beside the path.
