@@ -155,11 +155,25 @@ TEST_F(HandleInput, ADragThatIsOverWithinOneFrameEndsWhereTheButtonCameUp) {
 class FieldInput : public Input {
   protected:
     FieldInput() {
-        view_.add_panel("Training", [this](app::Widgets& ui) { ui.text_field("name", name_); });
+        view_.add_panel("Training", [this](app::Widgets& ui) {
+            ui.text_field("name", name_);
+            ui.checkbox("first", first_);
+            ui.checkbox("second", second_);
+            ui.slider("rate", rate_, 0, 1);
+        });
         settle();
-        const auto found = view_.places().find("Training/name");
-        EXPECT_NE(found, view_.places().end());
-        if (found != view_.places().end()) field_ = found->second.center();
+        field_ = place("name");
+    }
+    Vec2d place(const std::string& widget) {
+        const auto found = view_.places().find("Training/" + widget);
+        EXPECT_NE(found, view_.places().end()) << widget;
+        return found == view_.places().end() ? Vec2d(0, 0) : Vec2d(found->second.center());
+    }
+    void add_click(std::vector<InputEvent>& events, Vec2d where, bool control = false) {
+        for (const Kind kind : {Kind::move, Kind::press, Kind::release}) {
+            events.push_back(at(kind, where));
+            events.back().control = control;
+        }
     }
     void click(Vec2d where) {
         step({at(Kind::move, where)});
@@ -169,6 +183,8 @@ class FieldInput : public Input {
     }
 
     std::string name_;
+    bool first_ = false, second_ = false;
+    double rate_ = 0.75;
     Vec2d field_{0, 0};
     const Vec2d background_{450, 560};
 };
@@ -208,6 +224,54 @@ TEST_F(FieldInput, HandlersSeeAKeyComeUpThatTheySawGoDown) {
     EXPECT_EQ(seen, (std::vector<Kind>{Kind::key_down, Kind::key_up}));
     step({key('P'), up('P')});
     EXPECT_EQ(seen.size(), 2u);
+}
+
+TEST_F(FieldInput, LettersAfterAClickIntoAFieldAreItsOwnWithinOneFrame) {
+    std::vector<InputEvent> events;
+    add_click(events, field_);
+    for (const InputEvent& event : {key('H'), text('h'), up('H'), key('K'), text('k'), up('K')})
+        events.push_back(event);
+    step(events);
+    settle();
+    EXPECT_EQ(name_, "hk");
+    EXPECT_TRUE(view_.state().panels.shown);
+    EXPECT_TRUE(view_.drawing().path().editor.keys().empty());
+    // And after a click beside it they are the view's again.
+    events.clear();
+    add_click(events, background_);
+    events.push_back(key('H'));
+    step(events);
+    settle();
+    EXPECT_FALSE(view_.state().panels.shown);
+    EXPECT_EQ(name_, "hk");
+}
+
+TEST_F(FieldInput, AClickCountsWhereItWasThoughThePointerHasMovedOn) {
+    std::vector<InputEvent> events;
+    add_click(events, place("first"));
+    add_click(events, place("second"));
+    events.push_back(at(Kind::move, background_));
+    step(events);
+    settle();
+    EXPECT_TRUE(first_);
+    EXPECT_TRUE(second_);
+}
+
+TEST_F(FieldInput, ControlAndAClickEditASlidersNumberWithinOneFrame) {
+    // With Control's own events, and without: it may have gone down before the window had the focus.
+    for (const bool own : {true, false}) {
+        std::vector<InputEvent> events;
+        if (own) events.push_back(key(k::left_control));
+        if (own) events.back().control = true;
+        add_click(events, place("rate"), true);
+        events.push_back(up(k::left_control));
+        for (const InputEvent& event :
+             {text('0'), text('.'), text(own ? '2' : '4'), key(k::enter), up(k::enter)})
+            events.push_back(event);
+        step(events);
+        settle();
+        EXPECT_NEAR(rate_, own ? 0.2 : 0.4, 1e-6);  // as written, through float at most
+    }
 }
 
 }  // namespace

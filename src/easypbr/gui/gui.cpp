@@ -206,6 +206,31 @@ bool Gui::take_key(const app::InputEvent& event) {
     return own;
 }
 
+bool Gui::needs_frame_before(const app::InputEvent& event) const {
+    using Kind = app::InputEvent::Kind;
+    const ImGuiIO& io = context_->IO;
+    bool buttons = false;
+    for (size_t i = 0; i < down_.size(); ++i) buttons |= pressed_[i] || io.MouseDown[i] != down_[i];
+    const bool wheel = io.MouseWheel != 0 || io.MouseWheelH != 0;
+    const bool moves =
+        io.MousePos.x != float(event.position.x()) || io.MousePos.y != float(event.position.y());
+    switch (event.kind) {
+        case Kind::move:
+        case Kind::release:
+            return moves && (buttons || wheel);
+        case Kind::press:
+            return buttons || wheel || has_keys();
+        case Kind::scroll:
+            return buttons || has_keys() || (moves && wheel);
+        case Kind::key_down:
+        case Kind::key_up:
+        case Kind::text:
+            return buttons;
+        default:
+            return false;
+    }
+}
+
 bool Gui::take(const app::InputEvent& event) {
     using Kind = app::InputEvent::Kind;
     const GuiScope scope(context_);
@@ -217,6 +242,10 @@ bool Gui::take(const app::InputEvent& event) {
             return !owned_.empty() || (over_panel(event.position) && down_ == std::array<bool, 3>{});
         case Kind::press:
             take_button(event);
+            // A key that went down before the window had the focus has no event.
+            io.KeyCtrl = event.control;
+            io.KeyShift = event.shift;
+            io.KeyAlt = event.alt;
             if (over_panel(event.position)) owned_.push_back(event.button);
             return over_panel(event.position);
         case Kind::release: {
@@ -352,7 +381,6 @@ bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
     notifications(state);
     ImGui::Render();
     if (other) std::rethrow_exception(other);
-    const ImGuiIO& io = ImGui::GetIO();
     panels_.clear();
     for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
         if (window->Active && window->RootWindow == window &&
@@ -360,8 +388,9 @@ bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
             panels_.emplace_back(Vec2d(window->Pos.x, window->Pos.y),
                                  Vec2d(window->Pos.x + window->Size.x, window->Pos.y + window->Size.y));
     popup_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    wants_keys_ = io.WantTextInput;
     active_ = ImGui::IsAnyItemActive();
+    // ImGui's own WantTextInput follows in the next frame.
+    wants_keys_ = active_ && context_->WantTextInputNextFrame == 1;
     return std::exchange(laid_out_, hash_of(*ImGui::GetDrawData())) != laid_out_;
 }
 

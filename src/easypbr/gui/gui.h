@@ -32,6 +32,9 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
+    /// Whether the next lay_out() could not tell this event from what has happened since the last one: a
+    /// button or the wheel counts where the pointer was, and decides to whom the keys after it belong.
+    bool needs_frame_before(const app::InputEvent& event) const;
     /// Tells the GUI what happened. Returns whether the event is its own: over a panel, or typed into a
     /// field. Escape is its own while a menu or list is open, which it closes, and while is_active(). A
     /// button or key is its own until it comes up when it was as it went down.

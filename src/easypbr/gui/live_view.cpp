@@ -148,6 +148,11 @@ void LiveView::follow_device() {
 }
 
 void LiveView::handle(const InputEvent& event) {
+    while (gui_.needs_frame_before(event)) {
+        const gl::ContextScope scope(live_.session().context());
+        follow_device();
+        lay_out(0);
+    }
     const bool own = event.kind != Kind::drop && gui_.take(event);
     if (own) return live_.leave(event);
     if (live_.offer(event) || shortcut(event)) return;
@@ -179,6 +184,14 @@ bool LiveView::shortcut(const InputEvent& event) {
     }
 }
 
+bool LiveView::lay_out(double seconds) {
+    return gui_.lay_out(state_, seconds, live_.picture().texture(), [&] {
+        if (!state_.panels.shown) return;
+        images_.draw(state_);
+        user_panels_.draw(state_);
+    });
+}
+
 bool LiveView::draw_screen(double seconds, bool always) {
     const Vec2i size = state_.screen.size;
     const bool is_new = !screen_ || screen_.width() != size.x() || screen_.height() != size.y();
@@ -187,11 +200,7 @@ bool LiveView::draw_screen(double seconds, bool always) {
         screen_framebuffer_ = gl::Framebuffer({&screen_});
     }
     since_panels_ = 0;
-    const bool changed = gui_.lay_out(state_, seconds, live_.picture().texture(), [&] {
-        if (!state_.panels.shown) return;
-        images_.draw(state_);
-        user_panels_.draw(state_);
-    });
+    const bool changed = lay_out(seconds);
     if (!always && !changed && !is_new) return false;
     const float grey[4] = {0.25f, 0.25f, 0.25f, 1};
     screen_framebuffer_.clear_color(0, grey);

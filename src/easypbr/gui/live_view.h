@@ -91,6 +91,7 @@ class LiveView {
     void handle(const app::InputEvent& event);
     bool shortcut(const app::InputEvent& event);
     app::LiveNeeds needs() const;
+    bool lay_out(double seconds);
     bool draw_screen(double seconds, bool always);
     Image finished_now();
     /// An automatic camera shows the content below the menu bar.
