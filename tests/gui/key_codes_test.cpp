@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "easypbr/app/input.h"
 
 namespace easypbr::gui::key_codes_test {
@@ -11,7 +13,7 @@ namespace {
 /// What a key gives that is pressed and released.
 int pressed(int key, const char* name, bool control) {
     KeyCodes codes;
-    const int code = codes.down(key, name, control);
+    const int code = codes.down(key, name, control ? 2 : 0);
     EXPECT_EQ(codes.up(key), code);
     return code;
 }
@@ -40,6 +42,23 @@ TEST(KeyCodes, OtherKeysKeepTheirCode) {
     EXPECT_EQ(pressed(app::key::escape, nullptr, false), app::key::escape);
 }
 
+// Codes of GLFW: the keypad's 0 is 320, its comma 330, its Enter 335.
+TEST(KeyCodes, TheKeypadsKeysAreThoseOfTheSameName) {
+    constexpr int shift = 1, num_lock = 0x20;
+    namespace k = app::key;
+    for (const int modifiers : {0, shift, num_lock})
+        EXPECT_EQ(KeyCodes().down(335, nullptr, modifiers), k::enter);
+    for (const auto& [key, code] :
+         {std::pair(320, k::insert), {321, k::end}, {324, k::left}, {327, k::home}, {330, k::del}}) {
+        EXPECT_EQ(KeyCodes().down(key, nullptr, 0), code);
+        EXPECT_EQ(KeyCodes().down(key, nullptr, num_lock | shift), code);
+        EXPECT_EQ(KeyCodes().down(key, nullptr, num_lock), key);
+        EXPECT_EQ(KeyCodes().down(key, nullptr, shift), key);
+    }
+    EXPECT_EQ(pressed(325, nullptr, false), 325);  // 5 has no other name
+    EXPECT_EQ(pressed(331, nullptr, false), 331);  // divides
+}
+
 // GLFW says how the modifiers were before the event.
 TEST(KeyCodes, AModifierCountsFromItsOwnEventOn) {
     constexpr int shift = 1, control = 2, alt = 4;
@@ -57,8 +76,8 @@ TEST(KeyCodes, AModifierCountsFromItsOwnEventOn) {
 // With Control let go first it would otherwise stay down for ever.
 TEST(KeyCodes, AKeyGoesUpAsItWentDown) {
     KeyCodes codes;
-    EXPECT_EQ(codes.down('W', "z", true), 'Z');
-    EXPECT_EQ(codes.down('W', "z", false), 'Z');  // repeats
+    EXPECT_EQ(codes.down('W', "z", 2), 'Z');
+    EXPECT_EQ(codes.down('W', "z", 0), 'Z');  // repeats
     EXPECT_EQ(codes.up('W'), 'Z');
     EXPECT_EQ(codes.up('W'), 'W');
 }

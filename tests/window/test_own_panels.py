@@ -83,6 +83,16 @@ def test_a_flight_ends_when_its_key_comes_up_in_a_field(window):
     assert np.array_equal(window.view.camera.position, after)
 
 
+def test_the_keypads_enter_takes_a_number(window):
+    values = []
+    window.view.add_panel("Training", lambda ui: values.append(ui.number("rate", 1.0)))
+    window.settle()
+    window.mouse("mousemove", *middle(window, "Training/rate"), "keydown", "ctrl", "click", 1, "keyup", "ctrl")
+    # What comes after it is no longer the field's.
+    window.key("7", "KP_Enter", "h")
+    assert values[-1] == 7 and not window.state["show_panels"]
+
+
 def test_a_callback_may_close_the_window(window):
     window.view.on_event(lambda event: window.view.close(), kind="key_down")
     window.display.run("xdotool", "key", "k")

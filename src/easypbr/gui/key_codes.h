@@ -19,15 +19,28 @@ inline int modifiers_after(int key, bool down, int before) {
     return down ? before | 1 << left : before & ~(1 << left);
 }
 
+/// What a key of the keypad stands for: Enter always, the others while they type no digits; any other key for
+/// itself. `modifiers`: GLFW's bits.
+inline int without_keypad(int key, int modifiers) {
+    namespace k = app::key;
+    constexpr int first = 320, comma = 330, enter = 335, shift = 1, num_lock = 0x20;
+    constexpr int names[] = {k::insert, k::end,  k::down, k::page_down, k::left, 325,
+                             k::right,  k::home, k::up,   k::page_up,   k::del};
+    if (key == enter) return k::enter;
+    // Shift turns it round.
+    const bool digits = !(modifiers & num_lock) == !!(modifiers & shift);
+    return key >= first && key <= comma && !digits ? names[key - first] : key;
+}
+
 /// The keys that are down in a window, as codes of app::InputEvent.
 class KeyCodes {
   public:
     /// The code of a key that goes down, or that repeats. `key`: its place, as the letter that a US keyboard
-    /// has there; `name`: what the layout has there, UTF-8, null when it types nothing. With Control it is
-    /// the layout's letter; without, W A S D Q E are places, and all other letters those of the layout. A
-    /// layout without ASCII letters leaves the place's.
-    int down(int key, const char* name, bool control) {
-        return down_.try_emplace(key, code(key, name, control)).first->second;
+    /// has there; `name`: what the layout has there, UTF-8, null when it types nothing; `modifiers`: GLFW's
+    /// bits. With Control it is the layout's letter; without, W A S D Q E are places, and all other letters
+    /// those of the layout. A layout without ASCII letters leaves the place's.
+    int down(int key, const char* name, int modifiers) {
+        return down_.try_emplace(key, code(key, name, modifiers)).first->second;
     }
     /// The code that the key had when it went down, whatever else has changed meanwhile.
     int up(int key) {
@@ -40,12 +53,13 @@ class KeyCodes {
 
   private:
     static bool flies(int code) { return std::ranges::count(std::string_view("WASDQE"), code) > 0; }
-    static int code(int key, const char* name, bool control) {
+    static int code(int key, const char* name, int modifiers) {
+        constexpr int control = 2;
         const bool is_letter =
             name && name[0] != 0 && name[1] == 0 && std::isalpha(static_cast<unsigned char>(name[0]));
-        if (!is_letter) return key;
+        if (!is_letter) return without_keypad(key, modifiers);
         const int letter = std::toupper(static_cast<unsigned char>(name[0]));
-        return !control && (flies(key) || flies(letter)) ? key : letter;
+        return !(modifiers & control) && (flies(key) || flies(letter)) ? key : letter;
     }
 
     std::map<int, int> down_;  ///< code by place

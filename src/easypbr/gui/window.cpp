@@ -24,6 +24,8 @@ using Kind = InputEvent::Kind;
 static_assert(app::key::escape == GLFW_KEY_ESCAPE && app::key::del == GLFW_KEY_DELETE &&
               app::key::right == GLFW_KEY_RIGHT && app::key::end == GLFW_KEY_END &&
               app::key::f1 == GLFW_KEY_F1 && app::key::f12 == GLFW_KEY_F12);
+static_assert(GLFW_KEY_KP_0 == 320 && GLFW_KEY_KP_5 == 325 && GLFW_KEY_KP_DECIMAL == 330 &&
+              GLFW_KEY_KP_ENTER == 335 && GLFW_MOD_NUM_LOCK == 0x20);
 static_assert(app::key::left_shift == GLFW_KEY_LEFT_SHIFT && app::key::right_alt == GLFW_KEY_RIGHT_ALT &&
               GLFW_MOD_SHIFT == 1 && GLFW_MOD_CONTROL == 2 && GLFW_MOD_ALT == 4);
 
@@ -114,9 +116,8 @@ struct WindowCallbacks {
         of(window).modifiers_ = modifiers_after(key, action != GLFW_RELEASE, mods);
         InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::key_up : Kind::key_down);
         KeyCodes& codes = of(window).key_codes_;
-        event.key = action == GLFW_RELEASE
-                        ? codes.up(key)
-                        : codes.down(key, glfw().glfwGetKeyName(key, scancode), mods & GLFW_MOD_CONTROL);
+        event.key = action == GLFW_RELEASE ? codes.up(key)
+                                           : codes.down(key, glfw().glfwGetKeyName(key, scancode), mods);
         event.repeat = of(window).repeats_ = action == GLFW_REPEAT;
     }
     static void text(GLFWwindow* window, unsigned code) {
@@ -156,6 +157,7 @@ Window::Window(const std::string& title, Vec2i size) {
         throw ContextError(fmt::format("no window: {}", reason ? reason : "it cannot be made"));
     }
     f.glfwSetWindowUserPointer(window_, this);
+    f.glfwSetInputMode(window_, GLFW_LOCK_KEY_MODS, GLFW_TRUE);  // Num Lock
     f.glfwSetCursorPosCallback(window_, WindowCallbacks::move);
     f.glfwSetMouseButtonCallback(window_, WindowCallbacks::button);
     f.glfwSetScrollCallback(window_, WindowCallbacks::scroll);
