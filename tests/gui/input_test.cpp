@@ -152,6 +152,21 @@ TEST_F(HandleInput, ADragThatIsOverWithinOneFrameEndsWhereTheButtonCameUp) {
     EXPECT_EQ(view_.drawing().selection().object, "box");
 }
 
+TEST_F(HandleInput, EscapeTakesADragBack) {
+    step({at(Kind::move, on_), at(Kind::press, on_)});
+    step({at(Kind::move, on_ + by_)});
+    ASSERT_GT(moved().x(), 0.1);
+    step({key(k::escape), up(k::escape)});
+    EXPECT_EQ(moved(), Vec3d(0, 0, 0));
+    step({at(Kind::move, on_)});
+    step({at(Kind::release, on_)});
+    settle();
+    EXPECT_EQ(moved(), Vec3d(0, 0, 0));
+    EXPECT_FALSE(view_.wants_to_close());
+    step({at(Kind::press, on_), at(Kind::move, on_ + by_), at(Kind::release, on_ + by_)});
+    EXPECT_GT(moved().x(), 0.1);
+}
+
 class FieldInput : public Input {
   protected:
     FieldInput() {

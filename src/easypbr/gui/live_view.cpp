@@ -168,7 +168,7 @@ bool LiveView::shortcut(const InputEvent& event) {
     if (panel >= 0 && panel < panel_count) return panels.open[size_t(panel)] ^= true, true;
     switch (event.key) {
         case app::key::escape:
-            return std::exchange(panels.keys, false) || state_.manipulator.drag.axis >= 0;
+            return std::exchange(panels.keys, false) || cancel_drag(state_);
         case 'H':
             panels.shown = !panels.shown;
             return true;

@@ -24,6 +24,7 @@ constexpr int ring_points = 64;
 struct Subject {
     Vec3d centre{0, 0, 0};
     std::function<void(const Eigen::Affine3d& change)> apply;  ///< of what it was when the drag began
+    std::function<void()> revert;                              ///< to what it was
     bool only_moves = false;
 };
 
@@ -75,6 +76,10 @@ std::optional<Subject> selected_object(GuiState& state) {
     Subject subject;
     subject.centre = box.center();
     const Eigen::Affine3d parent = parent_pose(scene, state.selection().object), own = node->T_parent_mesh();
+    subject.revert = [&state, name = state.selection().object, mesh = *node, own]() mutable {
+        state.live.edits().will_move(name);
+        mesh.set_T_parent_mesh(own);
+    };
     subject.apply = [&state, name = state.selection().object, mesh = *node, parent,
                      own](const Eigen::Affine3d& change) mutable {
         state.live.edits().will_move(name);
@@ -93,6 +98,7 @@ std::optional<Subject> selected_light(GuiState& state) {
         if (!light->position.value()) return {};
         const Vec3d position = *light->position;
         subject.centre = position;
+        subject.revert = [light, kept = light->position] { light->position = kept; };
         subject.apply = [light, position](const Eigen::Affine3d& change) {
             light->position = Vec3d(change * position);
         };
@@ -103,6 +109,10 @@ std::optional<Subject> selected_light(GuiState& state) {
     if (std::ranges::find(names, state.selection().light) == names.end()) return {};
     const Light light = scene.light(state.selection().light);
     subject.centre = light.position;
+    subject.revert = [&state, light, name = state.selection().light] {
+        state.live.edits().will_change_light(name);
+        state.session().scene().set_light(name, light);
+    };
     subject.apply = [&state, light, name = state.selection().light](const Eigen::Affine3d& change) {
         Light moved = light;
         moved.position = change * light.position;
@@ -220,7 +230,8 @@ bool begin_drag(GuiState& state, Vec2d pixel) {
     const std::optional<Handles> handles = handles_of(state);
     const int axis = handles ? handles->at(pixel.cast<float>()) : -1;
     if (axis < 0) return false;
-    state.manipulator.drag = {axis, pixel, handles->subject.centre, handles->subject.apply};
+    const Subject& subject = handles->subject;
+    state.manipulator.drag = {axis, pixel, subject.centre, subject.apply, subject.revert};
     return true;
 }
 
@@ -236,12 +247,26 @@ bool drag_handle(GuiState& state, const app::InputEvent& event) {
     if (!drags || (event.kind != Kind::move && !(event.kind == Kind::release && left))) return false;
     try {
         const std::optional<Handles> handles = handles_of(state);
-        if (handles) drag.apply(change_of(handles->view, drag, handles->handle, event.position));
+        if (handles && drag.apply)
+            drag.apply(change_of(handles->view, drag, handles->handle, event.position));
         if (!handles || event.kind == Kind::release) drag = {};
     } catch (const Error& error) {
         state.notify(error.what(), true);
         drag = {};
     }
+    return true;
+}
+
+bool cancel_drag(GuiState& state) {
+    HandleDrag& drag = state.manipulator.drag;
+    if (drag.axis < 0) return false;
+    try {
+        if (drag.revert) drag.revert();
+    } catch (const Error& error) {
+        state.notify(error.what(), true);
+    }
+    drag.apply = {};
+    drag.revert = {};
     return true;
 }
 

@@ -43,5 +43,8 @@ void settings_rows(GuiState& state, const std::string& prefix);
 void draw_handles(GuiState& state);
 /// What the pointer does to them, while the panels are shown. Returns whether the event is theirs.
 bool drag_handle(GuiState& state, const app::InputEvent& event);
+/// What is dragged goes back to where it was, and stays until the button comes up. Returns whether there was
+/// a drag.
+bool cancel_drag(GuiState& state);
 
 }  // namespace easypbr::gui

@@ -62,6 +62,7 @@ struct HandleDrag {
     Vec2d from{0, 0};  ///< the pixel
     Vec3d centre{0, 0, 0};
     std::function<void(const Eigen::Affine3d& change)> apply;  ///< to what it was when the drag began
+    std::function<void()> revert;                              ///< to what it was; both empty after it
 };
 
 /// The handles that move, turn and scale what is selected.
