@@ -18,7 +18,7 @@ _Draws = TypeVar("_Draws", bound=Callable[["Panel"], object])
 _Called = TypeVar("_Called", bound=Callable[[], object])
 _Handles = TypeVar("_Handles", bound=Callable[["_easypbr.Event"], object])
 
-_KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "drop", "resize", "focus_lost")
+_KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "drop", "resize", "focus_lost", "leave")
 
 
 class Panel:

@@ -104,6 +104,25 @@ TEST_F(Input, UndoRepeats) {
     EXPECT_EQ(session_.settings().image.samples, 1);
 }
 
+TEST_F(Input, NothingIsHoveredWhenThePointerHasLeft) {
+    step({at(Kind::move, {450, 300})});
+    settle();
+    ASSERT_TRUE(view_.drawing().picture().hovered());
+    // The position of the event says nothing.
+    step({at(Kind::leave, {450, 300})});
+    settle();
+    EXPECT_FALSE(view_.drawing().picture().hovered());
+    // Keys come meanwhile: they move no pointer.
+    InputEvent letter = key('J');
+    letter.position = {450, 300};
+    step({letter});
+    settle();
+    EXPECT_FALSE(view_.drawing().picture().hovered());
+    step({at(Kind::move, {450, 300})});
+    settle();
+    EXPECT_TRUE(view_.drawing().picture().hovered());
+}
+
 class HandleInput : public Input {
   protected:
     HandleInput() {

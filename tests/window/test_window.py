@@ -203,6 +203,32 @@ def test_undo_takes_back_what_the_user_did_and_leaves_what_the_program_has_set(w
     assert ball.style.colormap == "turbo"
 
 
+def test_nothing_is_hovered_when_the_pointer_has_left(window):
+    left = []
+    window.view.on_event(left.append, kind="leave")
+
+    def go_outside():
+        before = len(left)
+        window.send("mousemove", 850, 300)
+        wait_until(lambda: window.update() and len(left) > before)
+        window.settle()
+        return window.shown()
+
+    window.mouse("mousemove", *MIDDLE)
+    beside = go_outside()
+    window.mouse("mousemove", *MIDDLE)
+    window.settle()
+    assert np.any(window.shown()[500:] != beside[500:])  # the status line
+    assert np.array_equal(go_outside(), beside)
+    # A drag goes on outside.
+    before = len(left)
+    window.mouse("mousemove", *MIDDLE, "mousedown", 3)
+    window.mouse("mousemove", 850, 300)
+    assert len(left) == before
+    window.send("mouseup", 3)
+    wait_until(lambda: window.update() and len(left) > before)
+
+
 def test_the_picture_follows_a_resized_window(window):
     window.display.run("wmctrl", "-r", window.title, "-e", "0,-1,-1,1000,500")
     wait_until(lambda: window.update() and window.state["size"] == [1000, 500])

@@ -28,10 +28,11 @@ struct InputEvent {
         scroll,   ///< by `scroll` notches
         key_down,
         key_up,
-        text,       ///< of one `code` point
-        drop,       ///< files `paths` were dropped
-        resize,     ///< the picture has another `size` from now on
-        focus_lost  ///< keys and buttons count as released
+        text,        ///< of one `code` point
+        drop,        ///< files `paths` were dropped
+        resize,      ///< the picture has another `size` from now on
+        focus_lost,  ///< keys and buttons count as released
+        leave        ///< the pointer is over the picture no more
     };
     Kind kind = Kind::move;
     Vec2d position{0, 0};  ///< pixels of the picture, (0, 0) is the top left corner

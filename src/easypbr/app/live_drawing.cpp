@@ -72,6 +72,10 @@ void LiveDrawing::leave(const InputEvent& event) {
 }
 
 bool LiveDrawing::offer(const InputEvent& event) {
+    if (event.kind == Kind::leave) {
+        pointer_ = {-1, -1};
+        picture_.point_at(pointer_, false);
+    }
     if (event.kind == Kind::move) {
         if (std::exchange(pointer_, event.position) != event.position) navigation_.point_elsewhere();
         picture_.point_at(pointer_, true);

@@ -15,7 +15,8 @@ namespace easypbr::gui {
     X(glfwWindowHint)                                                                                       \
     X(glfwDefaultWindowHints)                                                                               \
     X(glfwCreateWindow)                                                                                     \
-    X(glfwDestroyWindow) X(glfwMakeContextCurrent) X(glfwSwapBuffers) X(glfwSwapInterval) X(glfwPollEvents) \
+    X(glfwDestroyWindow)                                                                                    \
+    X(glfwMakeContextCurrent) X(glfwSwapBuffers) X(glfwSwapInterval) X(glfwPollEvents)                      \
         X(glfwWaitEventsTimeout) X(glfwPostEmptyEvent) X(glfwWindowShouldClose) X(glfwSetWindowUserPointer) \
             X(glfwGetWindowUserPointer) X(glfwGetFramebufferSize) X(glfwGetWindowSize)                      \
                 X(glfwGetWindowContentScale) X(glfwSetWindowTitle) X(glfwGetClipboardString)                \
@@ -24,7 +25,7 @@ namespace easypbr::gui {
                             X(glfwSetDropCallback) X(glfwSetWindowFocusCallback)                            \
                                 X(glfwSetWindowRefreshCallback) X(glfwGetCursorPos) X(glfwGetKeyName)       \
                                     X(glfwInitHint) X(glfwShowWindow) X(glfwGetWindowAttrib)                \
-                                        X(glfwSetInputMode)
+                                        X(glfwSetInputMode) X(glfwSetCursorEnterCallback)
 
 /// Its functions.
 struct Glfw {

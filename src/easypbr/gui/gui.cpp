@@ -4,6 +4,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <exception>
 #include <set>
 #include <utility>
@@ -218,6 +219,8 @@ bool Gui::needs_frame_before(const app::InputEvent& event) const {
         case Kind::move:
         case Kind::release:
             return moves && (buttons || wheel);
+        case Kind::leave:
+            return buttons || wheel;
         case Kind::press:
             return buttons || wheel || has_keys();
         case Kind::scroll:
@@ -235,7 +238,10 @@ bool Gui::take(const app::InputEvent& event) {
     using Kind = app::InputEvent::Kind;
     const GuiScope scope(context_);
     ImGuiIO& io = ImGui::GetIO();
-    io.MousePos = ImVec2(float(event.position.x()), float(event.position.y()));
+    if (event.kind == Kind::leave)
+        io.MousePos = ImVec2(-FLT_MAX, -FLT_MAX);
+    else if (event.kind <= Kind::scroll)
+        io.MousePos = ImVec2(float(event.position.x()), float(event.position.y()));
     const auto owned = std::ranges::find(owned_, event.button);
     switch (event.kind) {
         case Kind::move:

@@ -109,6 +109,21 @@ struct WindowCallbacks {
         of(window).modifiers_ = mods;
         InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::release : Kind::press);
         event.button = app::MouseButton(button);
+        int& buttons = of(window).buttons_;
+        buttons = action == GLFW_RELEASE ? buttons & ~(1 << button) : buttons | 1 << button;
+        leave(window);
+    }
+    static void enter(GLFWwindow* window, int entered) {
+        of(window).outside_ = !entered;
+        leave(window);
+        if (!entered) return;
+        // GLFW tells of no move to where the pointer has been before.
+        of(window).pointer_.reset();
+        add(window, Kind::move);
+    }
+    /// A drag goes on outside until its button comes up.
+    static void leave(GLFWwindow* window) {
+        if (of(window).outside_ && of(window).buttons_ == 0) add(window, Kind::leave);
     }
     static void scroll(GLFWwindow* window, double x, double y) { add(window, Kind::scroll).scroll = {x, y}; }
     static void key(GLFWwindow* window, int key, int scancode, int action, int mods) {
@@ -129,7 +144,7 @@ struct WindowCallbacks {
         add(window, Kind::drop).paths.assign(paths, paths + count);
     }
     static void focus(GLFWwindow* window, int focused) {
-        of(window).modifiers_ = 0;
+        of(window).modifiers_ = of(window).buttons_ = 0;
         if (!focused) add(window, Kind::focus_lost);
     }
     static void refresh(GLFWwindow* window) { of(window).needs_present_ = true; }
@@ -159,6 +174,7 @@ Window::Window(const std::string& title, Vec2i size) {
     f.glfwSetWindowUserPointer(window_, this);
     f.glfwSetInputMode(window_, GLFW_LOCK_KEY_MODS, GLFW_TRUE);  // Num Lock
     f.glfwSetCursorPosCallback(window_, WindowCallbacks::move);
+    f.glfwSetCursorEnterCallback(window_, WindowCallbacks::enter);
     f.glfwSetMouseButtonCallback(window_, WindowCallbacks::button);
     f.glfwSetScrollCallback(window_, WindowCallbacks::scroll);
     f.glfwSetKeyCallback(window_, WindowCallbacks::key);

@@ -60,6 +60,8 @@ class Window {
     KeyCodes key_codes_;
     int modifiers_ = 0;             ///< GLFW's bits, after the last event
     bool repeats_ = false;          ///< the last key's event was a repetition
+    bool outside_ = false;          ///< the pointer has left, though a drag may go on
+    int buttons_ = 0;               ///< bits of those that are down
     std::optional<Vec2d> pointer_;  ///< at the last event, in screen coordinates
     bool needs_present_ = true;
     bool is_shown_ = false;

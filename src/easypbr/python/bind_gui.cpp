@@ -56,8 +56,8 @@ int on_event(SharedViewer& self, nb::object function) {
 }
 
 std::string kind_name(const InputEvent& event) {
-    constexpr const char* names[] = {"move",   "press", "release", "scroll", "key_down",
-                                     "key_up", "text",  "drop",    "resize", "focus_lost"};
+    constexpr const char* names[] = {"move", "press", "release", "scroll",     "key_down", "key_up",
+                                     "text", "drop",  "resize",  "focus_lost", "leave"};
     return names[size_t(event.kind)];
 }
 
@@ -85,10 +85,9 @@ std::pair<double, double> pair_of(const Vec2d& values) {
 
 void bind_event(nb::module_& module) {
     nb::class_<InputEvent>(module, "Event", "An input event of mouse, keyboard or window.")
-        .def_prop_ro(
-            "kind", kind_name,
-            "'move', 'press', 'release', 'scroll', 'key_down', 'key_up', 'text', 'drop', 'resize' or "
-            "'focus_lost'.")
+        .def_prop_ro("kind", kind_name,
+                     "'move', 'press', 'release', 'scroll', 'key_down', 'key_up', 'text', 'drop', 'resize', "
+                     "'focus_lost' or 'leave'.")
         .def_prop_ro(
             "position", [](const InputEvent& e) { return pair_of(e.position); },
             "Pointer position in pixels from the top left corner of the window.")
