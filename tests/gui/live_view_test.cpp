@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "easypbr/app/camera_text.h"
 #include "easypbr/app/channels.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/interrupt.h"
@@ -421,20 +420,6 @@ TEST(LiveView, AnEmptySceneIsAnEmptyScreen) {
     EXPECT_EQ(screen.at<uint8_t>(32, 24)[0], 64);  // the grey of a default background
     EXPECT_TRUE(view.drawing().notifications().list().empty());
     EXPECT_THROW(LiveView(session).screen(), ArgumentError);
-}
-
-TEST(CameraText, GoesThroughTheClipboardExactly) {
-    Settings settings, other;
-    settings.camera.pose = {1, 0, 0, 0.1, 0, 1, 0, 1.0 / 3, 0, 0, 1, 1e-17, 0, 0, 0, 1};
-    settings.camera.fov_y_deg = 41.5f;
-    app::apply_camera_text("--set " + app::camera_text(settings), other);
-    EXPECT_EQ(other.camera.pose, settings.camera.pose);
-    EXPECT_EQ(other.camera.fov_y_deg, 41.5f);
-    EXPECT_THROW(app::apply_camera_text("hello", other), FormatError);
-    EXPECT_THROW(app::apply_camera_text("", other), FormatError);
-    EXPECT_THROW(app::apply_camera_text("camera.fov_y_deg=far", other), ArgumentError);
-    EXPECT_THROW(app::apply_camera_text("camera.pose=2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", other), ArgumentError);
-    EXPECT_EQ(other.camera.pose, settings.camera.pose);
 }
 
 TEST(History, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
