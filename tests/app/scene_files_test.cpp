@@ -11,7 +11,9 @@
 #include "easypbr/app/clock.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/settings/settings_io.h"
 #include "easypbr/scene/mesh_data.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app::scene_files_test {
 namespace {
@@ -128,6 +130,57 @@ TEST_F(WatchedFiles, WhatWasRemovedIsNotShownAgain) {
     write("a.obj", triangle);
     EXPECT_TRUE(reloads());
     EXPECT_EQ(session_.scene().get("a").F().rows(), 1);
+}
+
+// The command that is told draws the picture again, for a POSIX shell; its parts come from the manual of sh.
+TEST_F(WatchedFiles, SavedSettingsComeWithACommandAndWhatTheyDoNotHold) {
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    write("b.obj", triangle);
+    write("it's a.obj", triangle);
+    const fs::path saved = folder_ / "look.json";
+    files_.save_settings(saved, {123, 45});
+    EXPECT_NE(notifications_.list().back().text.find("nothing that is shown was read from a file"),
+              std::string::npos);
+    files_.open(folder_ / "b.obj");
+    files_.open(folder_ / "it's a.obj");
+    session_.scene().show(session_.scene().get("b"), "twice");
+    files_.save_settings(saved, {123, 45});
+    EXPECT_EQ(io::load_settings(saved).settings.image.size, Vec2i(123, 45));
+    EXPECT_NE(session_.settings().image.size, Vec2i(123, 45));
+    const std::string folder = folder_.string(), quote = "'\\''";
+    const std::string all = "Saved " + folder + "/look.json: easypbr render " + folder + "/b.obj '" + folder +
+                            "/it" + quote + "s a.obj' --settings " + folder + "/look.json -o " + folder +
+                            "/look.png makes this picture";
+    EXPECT_EQ(notifications_.list().back().text, all);
+    session_.scene().remove("twice");
+    edits_.change_look("b", "style.visible", {false});
+    edits_.change_look("b", "material.roughness", {0.25});
+    edits_.will_move("it's a");
+    session_.scene().get("it's a").translate(Vec3d(1, 0, 0));
+    session_.scene().show(Mesh(), "own");
+    files_.save_settings(saved, {123, 45});
+    EXPECT_EQ(notifications_.list().back().text,
+              all +
+                  ", but for materials and styles changed (b), objects hidden (b), "
+                  "objects without a file (own), poses changed (it's a)");
+    edits_.note();
+    edits_.change_look("b", "style.visible", {true});
+    session_.scene().remove("own");
+    files_.save_settings(saved, {123, 45});
+    EXPECT_EQ(notifications_.list().back().text,
+              all + ", but for materials and styles changed (b), poses changed (it's a)");
+}
+
+// It comes back when the file is read.
+TEST_F(WatchedFiles, SavedSettingsDoNotHoldThatALightWasRemoved) {
+    write("a.gltf", lit_triangle(5));
+    files_.open(folder_ / "a.gltf");
+    const std::string lamp = session_.scene().light_names().at(0);
+    edits_.will_change_light(lamp);
+    session_.scene().remove_light(lamp);
+    files_.save_settings(folder_ / "look.json", {12, 8});
+    EXPECT_TRUE(notifications_.list().back().text.ends_with("makes this picture, but for lights removed (" +
+                                                            lamp + ")"));
 }
 
 }  // namespace

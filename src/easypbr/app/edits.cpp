@@ -168,6 +168,12 @@ void Edits::change_data(const std::string& object, const std::function<void(Mesh
     chosen_[changed] = std::make_shared<const PropertyValue>(node->snapshot());
 }
 
+std::set<Property> Edits::changed() const {
+    std::set<Property> changed = touched_;
+    for (const auto& [property, value] : chosen_) changed.insert(property);
+    return changed;
+}
+
 void Edits::keep_chosen() {
     give_to_others();
     leave_changed();

@@ -36,6 +36,9 @@ class Edits {
     /// throws.
     void change_data(const std::string& object, const std::function<void(MeshData&)>& change);
 
+    /// What a person has changed, and has not undone.
+    std::set<Property> changed() const;
+
     /// Before an object is moved: undo() puts it back.
     void will_move(const std::string& object);
     /// Before a light of the scene is added, changed or removed.

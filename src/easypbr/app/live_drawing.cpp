@@ -177,7 +177,7 @@ LiveShot LiveDrawing::shot(const LiveNeeds& needs) {
 bool LiveDrawing::draw(const LiveNeeds& needs) {
     try {
         navigation_.advance(seconds_, size_);
-        if (std::exchange(wishes_.save, false)) files_.save_settings(settings_file);
+        if (std::exchange(wishes_.save, false)) files_.save_settings(settings_file, size_);
     } catch (const Error& error) {
         notifications_.add(error.what(), true);
     }

@@ -94,9 +94,11 @@ void warn_of_data(const Session& session, const fs::path& path) {
 
 }  // namespace
 
-void save_settings(const Session& session, const std::vector<fs::path>& files, const fs::path& path) {
+void save_settings(const Session& session, const std::vector<fs::path>& files, const fs::path& path,
+                   std::optional<Vec2i> size) {
     io::SettingsFile file;
     file.settings = session.settings();
+    if (size) file.settings.image.size = *size;
     const Scene& scene = session.scene();
     for (const std::string& name : scene.light_names()) file.lights[name] = scene.light(name);
     for (const fs::path& source : files) file.files[fs::absolute(source).string()] = io::hash_file(source);

@@ -40,8 +40,9 @@ std::vector<std::filesystem::path> layers_to_files(Session& session, const std::
                                                    std::optional<Vec2i> size = std::nullopt);
 
 /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
+/// `size`: that of the picture; none: the settings'.
 void save_settings(const Session& session, const std::vector<std::filesystem::path>& files,
-                   const std::filesystem::path& path);
+                   const std::filesystem::path& path, std::optional<Vec2i> size = std::nullopt);
 
 /// Takes over settings and lights from a file that save_settings() wrote. Files with another content than
 /// then are reported as warnings.

@@ -1,9 +1,13 @@
 #include "easypbr/app/scene_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "easypbr/app/output.h"
@@ -54,6 +58,32 @@ void add_parts(const fs::path& path, std::set<fs::path>& files) {
     for (const fs::directory_entry& entry : fs::directory_iterator(path.parent_path() / ".", ignored))
         if (extension_of(entry.path()) == part && text.find(entry.path().filename().string()) != text.npos)
             files.insert(entry.path());
+}
+
+/// The object and the nodes below it that are hidden themselves.
+void add_hidden(const Mesh& node, const std::string& path, std::set<std::string>& hidden) {
+    const auto data = node.snapshot();
+    if (!data->style.visible.value_or(true)) hidden.insert(path);
+    for (const Mesh& child : data->children) add_hidden(child, path + "/" + child.name(), hidden);
+}
+
+/// A light that is not there, of the file of an object that is.
+bool is_missing_light(const Scene& scene, const std::string& light) {
+    const auto lights = scene.light_names(), objects = scene.names();
+    return std::ranges::find(lights, light) == lights.end() &&
+           std::ranges::any_of(objects,
+                               [&](const std::string& object) { return light.starts_with(object + "/"); });
+}
+
+/// A word of a POSIX shell's command line.
+std::string shell_word(const std::string& text) {
+    const auto is_plain = [](unsigned char c) {
+        return std::isalnum(c) || std::string_view("_@%+=:,./-").find(char(c)) != std::string_view::npos;
+    };
+    if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
 }
 
 }  // namespace
@@ -138,14 +168,52 @@ void SceneFiles::reload(Watched& file) {
     notifications_.add("Reloaded " + file.name);
 }
 
-void SceneFiles::save_settings(const fs::path& path) {
-    std::set<fs::path> files;
-    for (const std::string& name : session_.scene().names())
-        if (const fs::path source = session_.scene().get(name).snapshot()->source; !source.empty())
-            files.insert(source);
-    app::save_settings(session_, {files.begin(), files.end()}, path);
-    notifications_.add(fmt::format("Saved {}: easypbr render --settings {} makes this picture", path.string(),
-                                   path.filename().string()));
+std::vector<fs::path> SceneFiles::sources() const {
+    std::vector<fs::path> files;
+    for (const std::string& name : session_.scene().names()) {
+        const fs::path source = session_.scene().get(name).snapshot()->source;
+        if (!source.empty() && std::ranges::find(files, source) == files.end()) files.push_back(source);
+    }
+    return files;
+}
+
+std::vector<std::string> SceneFiles::unsaved() const {
+    const Scene& scene = session_.scene();
+    std::map<std::string, std::set<std::string>> names;
+    for (const std::string& name : scene.names()) {
+        add_hidden(scene.get(name), name, names["objects hidden"]);
+        if (scene.get(name).snapshot()->source.empty()) names["objects without a file"].insert(name);
+    }
+    for (const Property& property : edits_.changed()) {
+        using Kind = Property::Kind;
+        if (property.kind == Kind::light && is_missing_light(scene, property.of))
+            names["lights removed"].insert(property.of);
+        if (property.kind == Kind::light || !node_named(scene, property.of)) continue;
+        if (property.kind == Kind::arrays) names["vertices removed"].insert(property.of);
+        if (property.kind == Kind::pose) names["poses changed"].insert(property.of);
+        if (property.kind == Kind::look && property.look != "style.visible")
+            names["materials and styles changed"].insert(property.of);
+    }
+    std::vector<std::string> texts;
+    for (const auto& [what, of] : names)
+        if (!of.empty()) texts.push_back(fmt::format("{} ({})", what, fmt::join(of, ", ")));
+    if (player_.shown_time() > 0) texts.push_back("the time of the animation");
+    return texts;
+}
+
+void SceneFiles::save_settings(const fs::path& path, Vec2i size) {
+    const std::vector<fs::path> files = sources();
+    app::save_settings(session_, files, path, size);
+    if (files.empty())
+        return notifications_.add(
+            fmt::format("Saved {}; nothing that is shown was read from a file", path.string()));
+    std::string command = "easypbr render";
+    for (const fs::path& file : files) command += " " + shell_word(file.string());
+    command += fmt::format(" --settings {} -o {}", shell_word(path.string()),
+                           shell_word(fs::path(path).replace_extension(".png").string()));
+    const std::vector<std::string> without = unsaved();
+    notifications_.add(fmt::format("Saved {}: {} makes this picture{}{}", path.string(), command,
+                                   without.empty() ? "" : ", but for ", fmt::join(without, ", ")));
 }
 
 }  // namespace easypbr::app

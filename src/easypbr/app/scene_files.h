@@ -44,8 +44,10 @@ class SceneFiles {
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
     void advance(double seconds);
 
-    /// Writes the settings, with the hashes of the files that are shown. Throws as app::save_settings().
-    void save_settings(const std::filesystem::path& path);
+    /// Writes the settings for pictures of this size, with the hashes of the files that are shown. The
+    /// notification is the command that draws the picture again, and what the file does not hold. Throws as
+    /// app::save_settings().
+    void save_settings(const std::filesystem::path& path, Vec2i size);
 
   private:
     struct Watched {
@@ -53,6 +55,10 @@ class SceneFiles {
         std::string name;
         std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all its files
     };
+    /// The files that are shown, in the order of the scene.
+    std::vector<std::filesystem::path> sources() const;
+    /// What is seen and no settings hold, in words.
+    std::vector<std::string> unsaved() const;
     /// Adds the files that the watched one is made of now.
     void note_files(Watched& watched) const;
     void show(const io::LoadedScene& loaded, const std::string& name);
