@@ -15,8 +15,10 @@ struct Notification {
 
 class Notifications {
   public:
-    /// Errors stay longer.
+    /// Errors stay longer. One that is told again while it is shown stays once, as the newest.
     void add(const std::string& text, bool is_error = false) {
+        if (is_error)
+            std::erase_if(list_, [&](const Notification& n) { return n.is_error && n.text == text; });
         list_.push_back({text, is_error, is_error ? 12.0 : 5.0});
         ++revision_;
     }

@@ -20,20 +20,21 @@ std::string limit_text(double value) {
 }
 
 bool edit_number(const FieldInfo& field, double& value) {
-    float shown = float(value);
-    const float low = float(std::max(field.min, -1e30)), high = float(std::min(field.max, 1e30));
+    // In double precision: the float nearest to a limit may lie beyond it.
+    const double low = std::max(field.min, -1e30), high = std::min(field.max, 1e30);
+    const ImGuiDataType type = ImGuiDataType_Double;
+    const ImGuiSliderFlags clamp = ImGuiSliderFlags_AlwaysClamp;
     const bool whole = field.whole || field.type == FieldType::integer;
-    const char* format = whole ? "%.0f" : std::abs(shown) >= 1000 ? "%.1f" : "%.3g";
+    const char* format = whole ? "%.0f" : std::abs(value) >= 1000 ? "%.1f" : "%.3g";
     bool changed = false;
-    if (double(high) - double(low) <= widest_slider) {
-        changed = ImGui::SliderFloat("##value", &shown, low, high, format, ImGuiSliderFlags_AlwaysClamp);
+    if (high - low <= widest_slider) {
+        changed = ImGui::SliderScalar("##value", type, &value, &low, &high, format, clamp);
     } else {
-        const float speed = whole ? 1.0f : std::max(std::abs(shown), 1e-4f) * 0.01f;
-        changed = ImGui::DragFloat("##value", &shown, speed, low, high, format, ImGuiSliderFlags_AlwaysClamp);
+        const float speed = whole ? 1.0f : float(std::max(std::abs(value), 1e-4)) * 0.01f;
+        changed = ImGui::DragScalar("##value", type, &value, speed, &low, &high, format, clamp);
     }
-    if (!changed) return false;
-    value = whole ? std::round(double(shown)) : double(shown);
-    return true;
+    if (changed && whole) value = std::round(value);
+    return changed;
 }
 
 bool edit_choice(const FieldInfo& field, std::string& value) {
@@ -212,7 +213,9 @@ void field_row(const FieldInfo& field, const Value& value, const std::optional<V
         if (field.type == FieldType::text) shown.data = std::string();
     } else {
         if (automatic) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.6f * ImGui::GetStyle().Alpha);
-        if (edit(field, shown.data)) put({shown.data});
+        const bool changed = edit(field, shown.data);
+        note_place(field.name);
+        if (changed) put({shown.data});
         if (automatic) ImGui::PopStyleVar();
     }
     if (field.can_be_automatic) automatic_tick(value, shown, put);

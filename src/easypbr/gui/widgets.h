@@ -24,7 +24,7 @@ std::string readable(const std::string& name);
 std::string tooltip_of(const FieldInfo& field);
 
 /// A row for a field whose value is `value`; `inferred` is shown while it is automatic. Calls `put` with what
-/// the person chose.
+/// the person chose. The value's place is noted under the field's name.
 void field_row(const FieldInfo& field, const Value& value, const std::optional<Value>& inferred,
                const std::function<void(const Value&)>& put);
 
