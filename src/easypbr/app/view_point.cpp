@@ -13,19 +13,18 @@ bool orthographic(const Camera& camera) {
     return camera.projection == Projection::orthographic;
 }
 
-/// Size of the world in one pixel at a depth, along x and y of the picture.
-Vec2d pixel_pitch(const Camera& camera, Vec2i size, double depth) {
-    const Mat4d p = camera.projection_matrix(double(size.x()) / size.y());
-    const double scale = orthographic(camera) ? 1 : depth;
-    return {2 * scale / (p(0, 0) * size.x()), 2 * scale / (p(1, 1) * size.y())};
-}
-
 void move_by(ViewPoint& view, const Vec3d& offset) {
     view.camera.T_world_cam.translation() += offset;
     view.target += offset;
 }
 
 }  // namespace
+
+Vec2d pixel_pitch(const Camera& camera, Vec2i size, double depth) {
+    const Mat4d p = camera.projection_matrix(double(size.x()) / size.y());
+    const double scale = orthographic(camera) ? 1 : depth;
+    return {2 * scale / (p(0, 0) * size.x()), 2 * scale / (p(1, 1) * size.y())};
+}
 
 ViewPoint orbited(const ViewPoint& view, const Vec3d& up, double right_deg, double up_deg) {
     const Mat3d axes = view.camera.T_world_cam.linear();

@@ -14,6 +14,9 @@ struct ViewPoint {
     double distance() const { return (target - camera.position()).norm(); }
 };
 
+/// Size of the world in one pixel at a depth along the optical axis, along x and y of the picture.
+Vec2d pixel_pitch(const Camera& camera, Vec2i size, double depth);
+
 /// Turns about the target: `right_deg` about the world's up axis, counter-clockwise seen from above, then
 /// `up_deg` about the picture's horizontal, which stops short of looking straight along the axis. The
 /// distance and the roll stay.

@@ -4,10 +4,13 @@
 #include <algorithm>
 
 #include "easypbr/app/output.h"
+#include "easypbr/app/status_text.h"
+#include "easypbr/app/view_point.h"
 #include "easypbr/gui/item_places.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
 #include "easypbr/io/settings/presets.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::gui {
 namespace {
@@ -130,12 +133,12 @@ void keys_window(GuiState& state) {
 }
 
 void status_line(GuiState& state) {
-    if (!state.live.picture().hovered()) return;
-    const app::Pick& pick = *state.live.picture().hovered();
-    std::string text = pick.object;
-    if (!pick.part.empty()) text += " / " + pick.part;
-    text += fmt::format("   {} {}   ({:.4g}, {:.4g}, {:.4g})", pick.is_face ? "face" : "point", pick.element,
-                        pick.position.x(), pick.position.y(), pick.position.z());
+    const std::optional<app::Pick>& pick = state.live.picture().hovered();
+    const ResolvedSettings* drawn = state.live.picture().resolved();
+    if (!pick || !drawn) return;
+    const Vec2d pitch = app::pixel_pitch(drawn->camera, state.live.size(), pick->depth);
+    const std::string text =
+        app::status_text(*pick, state.session().scene().origin(), pitch.cwiseAbs().minCoeff());
     const float pad = 6 * state.screen.scale, width = ImGui::CalcTextSize(text.c_str()).x;
     const float x = (float(state.screen.size.x()) - width) / 2;
     const float y = float(state.screen.size.y()) - ImGui::GetTextLineHeight() - 2 * pad;
