@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "easypbr/app/recording_target.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
@@ -164,6 +165,39 @@ TEST_F(MotionPanels, RecordsAPictureAndACameraPath) {
                                    with_channels(still, 3).bytes()) ||
                 std::ranges::equal(io::load_image(folder_ / "frame_04.png").bytes(), still.bytes()));
     EXPECT_FALSE(fs::exists(folder_ / "frame_09.png"));
+}
+
+TEST_F(MotionPanels, WhatWasRecordedBeforeStays) {
+    unfold(Panel::recorder);
+    settle();
+    app::RecordingForm& form = view_.drawing().recording_form();
+    form.picture = (folder_ / "picture.png").string();
+    form.video = (folder_ / "frame_%02d.png").string();
+    form.size = {32, 24};
+    for (const char* file : {"picture.png", "picture_2.png", "picture_3.png"}) {
+        click("Recorder/Picture");
+        EXPECT_EQ(view_.drawing().report().text, "Wrote " + (folder_ / file).string());
+        EXPECT_TRUE(fs::exists(folder_ / file));
+    }
+    for (const char* name : {"frame_%02d.png", "frame_%02d_2.png"}) {
+        click("Recorder/Video");
+        ASSERT_TRUE(view_.is_recording());
+        settle();
+        click("Recorder/Stop");
+        EXPECT_TRUE(view_.drawing().report().text.starts_with("Wrote " + (folder_ / name).string() + ": "))
+            << view_.drawing().report().text;
+    }
+    EXPECT_TRUE(fs::exists(folder_ / "frame_00_2.png"));
+    EXPECT_EQ(form.picture, (folder_ / "picture.png").string());
+    EXPECT_EQ(app::free_recording(folder_ / "film.mp4"), folder_ / "film.mp4");
+    io::save_image(Image(1, 1, 3, PixelType::u8), folder_ / "film.png");
+    fs::rename(folder_ / "film.png", folder_ / "film.mp4");
+    EXPECT_EQ(app::free_recording(folder_ / "film.mp4"), folder_ / "film_2.mp4");
+    fs::create_directory(folder_ / "out");
+    EXPECT_EQ(app::free_recording(folder_ / "out" / ""), folder_ / "out" / "");
+    io::save_image(Image(1, 1, 3, PixelType::u8), folder_ / "out" / "frame_00000.png");
+    EXPECT_EQ(app::free_recording(folder_ / "out" / ""), folder_ / "out_2" / "");
+    EXPECT_EQ(app::free_recording(folder_ / "out"), folder_ / "out_2");
 }
 
 TEST_F(MotionPanels, RecordsTheWindowWithItsPanelsAndWithoutBackground) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "easypbr/app/live_drawing.h"
+#include "easypbr/app/recording_target.h"
 #include "easypbr/core/error.h"
 #include "easypbr/scene/mesh.h"
 
@@ -73,6 +74,10 @@ void LiveDrawing::begin_recording(LiveWishes::Recording wish, const LiveScreens&
     using Wish = LiveWishes::Recording;
     RecordingForm form = form_;
     form.panels &= bool(screens.shown);
+    if (wish == Wish::none || wish == Wish::stop) return;
+    // What a person made before stays.
+    form.picture = free_picture(form.picture).string();
+    form.video = free_recording(form.video).string();
     if (wish == Wish::picture) tell("Wrote " + recording_.picture(form, screens.finished), false);
     if (wish == Wish::video) recording_.start(form, size_);
     if (wish == Wish::path && path_.editor.path()) {
@@ -97,7 +102,7 @@ void LiveDrawing::record(const LiveScreens& screens) {
 
 void LiveDrawing::stop_recording() {
     if (!recording_.is_running()) return;
-    const std::string video = form_.video;
+    const std::string video = recording_.file();
     try {
         tell(fmt::format("Wrote {}: {} frames", video, recording_.stop()), false);
     } catch (const std::exception& error) {

@@ -49,6 +49,8 @@ class LiveRecording {
 
     bool is_running() const { return running_.has_value(); }
     bool is_path() const { return running_ && running_->path; }
+    /// What is recorded to; empty when nothing is.
+    std::string file() const { return running_ ? running_->form.video : std::string(); }
     int frames() const { return running_ ? running_->frames : 0; }
     /// Of a path; 0 of what has no end.
     int total() const { return running_ ? int(running_->times.size()) : 0; }

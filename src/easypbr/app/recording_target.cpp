@@ -45,6 +45,28 @@ fs::path numbered(const fs::path& path) {
     return is_folder(path) && !number_in(path.filename().string()) ? path / "frame_%05d.png" : path;
 }
 
+bool is_there(const fs::path& path) {
+    std::error_code unreadable;  // The check before writing reports it.
+    return fs::exists(path, unreadable);
+}
+
+bool holds_recording(const fs::path& path) {
+    return is_there(io::is_video(path) ? path : frame_path(path, 0));
+}
+
+/// "NAME_2.EXTENSION" of a file, "NAME_2" of a folder.
+fs::path counted(const fs::path& path, int count) {
+    if (!path.has_filename()) return counted(path.parent_path(), count) / "";
+    return path.parent_path() /
+           fmt::format("{}_{}{}", path.stem().string(), count, path.extension().string());
+}
+
+fs::path free_path(const fs::path& path, bool (*is_taken)(const fs::path&)) {
+    fs::path found = path;
+    for (int count = 2; is_taken(found); ++count) found = counted(path, count);
+    return found;
+}
+
 /// The names that recordings may have, for messages.
 std::string known_kinds() {
     return fmt::format("a video ({}) or numbered pictures ({}), for example out/frame_%04d.png",
@@ -131,6 +153,16 @@ fs::path frame_path(const fs::path& path, int index) {
                         path.string(), known_kinds()));
     return pattern.parent_path() / fmt::format("{}{:0{}d}{}", name.substr(0, number->begin), index,
                                                number->digits, name.substr(number->end));
+}
+
+fs::path free_picture(const fs::path& path) {
+    return free_path(path, is_there);
+}
+
+fs::path free_recording(const fs::path& path) {
+    // What cannot be recorded to is reported when the recording begins.
+    const bool is_known = is_recording_name(path) || (path.has_relative_path() && is_folder(path));
+    return is_known ? free_path(path, holds_recording) : path;
 }
 
 Encoding encoding_for_recording(const fs::path& path, bool deep) {

@@ -14,6 +14,11 @@ namespace easypbr::app {
 /// The path of frame `index` for "out/frame_%04d.png" or for a folder ("out/": out/frame_00000.png).
 std::filesystem::path frame_path(const std::filesystem::path& path, int index);
 
+/// The path where nothing lies yet, else with the first number that is free: "recording_2.mp4",
+/// "out/frame_%04d_2.png", "out_2/". For one picture, and for a recording.
+std::filesystem::path free_picture(const std::filesystem::path& path);
+std::filesystem::path free_recording(const std::filesystem::path& path);
+
 /// Whether it is a video's name or numbered pictures': "out.mp4", "out/frame_%04d.png".
 bool is_recording_name(const std::filesystem::path& path);
 

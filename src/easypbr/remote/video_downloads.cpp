@@ -48,6 +48,9 @@ fs::path VideoDownloads::file() const {
 void VideoDownloads::begin(app::LiveWishes::Recording what) {
     if (folder_.empty()) folder_ = new_folder();
     made_.reset();
+    // A recording takes the place of the last one.
+    std::error_code absent;
+    fs::remove(file(), absent);
     app::RecordingForm& recorded = live_.recording_form();
     recorded.video = file().string();
     // H.264 has even sides.
