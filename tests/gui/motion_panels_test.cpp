@@ -319,6 +319,40 @@ TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     EXPECT_TRUE(player_.is_playing());
 }
 
+// What is typed stays within the slider's range, -2 to 4.
+TEST_F(MotionPanels, ASpeedThatIsTypedStaysInItsRange) {
+    AnimationNode node;
+    node.mesh = session_.scene().get("ball");
+    player_.add("ball", Animations({{node}, {}, {}, {slide("slide")}}));
+    unfold(Panel::animations);
+    const auto type = [&](const std::string& text) {
+        InputEvent event;
+        event.kind = Kind::key_down;
+        event.key = app::key::left_control;
+        event.control = true;
+        step({event});
+        click("Animations/speed");
+        event.kind = Kind::key_up;
+        event.control = false;
+        step({event});
+        for (const char letter : text) {
+            event.kind = Kind::text;
+            event.code = uint32_t(letter);
+            step({event});
+        }
+        for (const Kind kind : {Kind::key_down, Kind::key_up}) {
+            event.kind = kind;
+            event.key = app::key::enter;
+            step({event});
+        }
+        settle();
+        return player_.speed();
+    };
+    EXPECT_EQ(type("0.5"), 0.5);
+    EXPECT_EQ(type("1e38"), 4);
+    EXPECT_EQ(type("-1e38"), -2);
+}
+
 // Frames of 48 x 32 in a window of 560 x 620: 560 x 373, with bars of 123 above and below.
 TEST_F(MotionPanels, ARecordedPathKeepsItsShapeInTheWindow) {
     view_.state().panels.shown = false;

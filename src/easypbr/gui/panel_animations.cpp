@@ -53,7 +53,8 @@ void animations_panel(GuiState& state) {
     if (!begin_rows("how", false)) return;
     begin_row("speed", "1: as it was made; below 0: backwards");
     float speed = float(player.speed());
-    if (ImGui::SliderFloat("##speed", &speed, -2, 4, "%.2f")) player.set_speed(double(speed));
+    if (ImGui::SliderFloat("##speed", &speed, -2, 4, "%.2f", ImGuiSliderFlags_AlwaysClamp))
+        player.set_speed(double(speed));
     note_place("Animations/speed");
     begin_row("loop");
     bool loop = player.loops();
