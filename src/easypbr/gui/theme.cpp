@@ -83,6 +83,8 @@ void add_font(ImFontAtlas& atlas, float scale) {
     static const ImWchar ranges[] = {0x20,   0xff,   0x100,  0x17f,  0x370,  0x3ff,  0x400,
                                      0x4ff,  0x2010, 0x205e, 0x2190, 0x21ff, 0x2200, 0x22ff,
                                      0x25a0, 0x26ff, 0x2713, 0x2717, 0};
+    // What stands for characters that the font lacks; a question mark would be read as one.
+    constexpr ImWchar white_square = 0x25a1;
     ImFontConfig config;
     config.FontDataOwnedByAtlas = false;
     config.OversampleH = 2;
@@ -90,7 +92,8 @@ void add_font(ImFontAtlas& atlas, float scale) {
     const auto file = app::font_file();
     // ImGui takes a pointer that is not constant and only reads.
     void* data = const_cast<std::byte*>(file.data());
-    atlas.AddFontFromMemoryTTF(data, int(file.size()), 14 * scale, &config, ranges);
+    ImFont* font = atlas.AddFontFromMemoryTTF(data, int(file.size()), 14 * scale, &config, ranges);
+    font->FallbackChar = white_square;
 }
 
 }  // namespace easypbr::gui
