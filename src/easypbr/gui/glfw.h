@@ -16,16 +16,16 @@ namespace easypbr::gui {
     X(glfwDefaultWindowHints)                                                                               \
     X(glfwCreateWindow)                                                                                     \
     X(glfwDestroyWindow)                                                                                    \
-    X(glfwMakeContextCurrent) X(glfwSwapBuffers) X(glfwSwapInterval) X(glfwPollEvents)                      \
-        X(glfwWaitEventsTimeout) X(glfwPostEmptyEvent) X(glfwWindowShouldClose) X(glfwSetWindowUserPointer) \
-            X(glfwGetWindowUserPointer) X(glfwGetFramebufferSize) X(glfwGetWindowSize)                      \
-                X(glfwGetWindowContentScale) X(glfwSetWindowTitle) X(glfwGetClipboardString)                \
-                    X(glfwSetClipboardString) X(glfwSetCursorPosCallback) X(glfwSetMouseButtonCallback)     \
-                        X(glfwSetScrollCallback) X(glfwSetKeyCallback) X(glfwSetCharCallback)               \
-                            X(glfwSetDropCallback) X(glfwSetWindowFocusCallback)                            \
-                                X(glfwSetWindowRefreshCallback) X(glfwGetCursorPos) X(glfwGetKeyName)       \
-                                    X(glfwInitHint) X(glfwShowWindow) X(glfwGetWindowAttrib)                \
-                                        X(glfwSetInputMode) X(glfwSetCursorEnterCallback)
+    X(glfwMakeContextCurrent)                                                                               \
+    X(glfwSwapBuffers) X(glfwSwapInterval) X(glfwPollEvents) X(glfwWaitEventsTimeout) X(glfwPostEmptyEvent) \
+        X(glfwWindowShouldClose) X(glfwSetWindowUserPointer) X(glfwGetWindowUserPointer)                    \
+            X(glfwGetFramebufferSize) X(glfwGetWindowSize) X(glfwGetWindowContentScale)                     \
+                X(glfwSetWindowTitle) X(glfwGetClipboardString) X(glfwSetClipboardString)                   \
+                    X(glfwSetCursorPosCallback) X(glfwSetMouseButtonCallback) X(glfwSetScrollCallback)      \
+                        X(glfwSetKeyCallback) X(glfwSetCharCallback) X(glfwSetDropCallback)                 \
+                            X(glfwSetWindowFocusCallback) X(glfwSetWindowRefreshCallback)                   \
+                                X(glfwGetCursorPos) X(glfwGetKeyName) X(glfwInitHint) X(glfwShowWindow)     \
+                                    X(glfwGetWindowAttrib) X(glfwSetInputMode) X(glfwSetCursorEnterCallback)
 
 /// Its functions.
 struct Glfw {
