@@ -38,11 +38,23 @@ float pixels_per_unit(float distance) {
     return 0.5 * u_size.y / (is_orthographic ? u_unproject.y : u_unproject.y * distance);
 }
 
+// A plane in view space that a ray stays on one side of: dot(xyz, p) + w is above 0 there.
+const vec4 no_face = vec4(0.0, 0.0, 0.0, 1e30);
+
 struct Exit {
     vec3 position, direction;  // where the ray goes on, relative to the camera
     vec3 inside;               // its direction within the volume
     float path;                // length within the volume
+    vec4 back;                 // the face that it meets from within
+    vec4 kept;                 // the same if it is reflected there, else no_face
 };
+
+// The plane of the back face at a place in the picture; `normal` looks into the volume.
+vec4 face_at(vec2 uv, vec3 normal) {
+    vec3 v = view_position(floor(uv * u_size) + 0.5, max(textureLod(u_exit_depth, uv, 0.0).r, 1e-30));
+    vec3 n = normal * u_world_from_view;
+    return vec4(n, -dot(n, v));
+}
 
 // From a volume's front into it and out of its back.
 Exit through_volume(Surface s, vec3 normal, float ior) {
@@ -53,6 +65,8 @@ Exit through_volume(Surface s, vec3 normal, float ior) {
     x.path = e.thickness;
     x.position = s.position + inside * x.path;
     x.direction = -s.view;  // a slab's other side, unless the true one is known
+    x.back = no_face;
+    x.kept = no_face;
     vec2 uv = gl_FragCoord.xy / u_size;
     float exit_depth = textureLod(u_exit_depth, uv, 0.0).r;
     bool has_back = exit_depth > 0.0;
@@ -76,15 +90,21 @@ Exit through_volume(Surface s, vec3 normal, float ior) {
     back = dot(back, inside) > 0.0 ? -back : back;
     vec3 outside = refract(inside, back, ior);
     // What is reflected within comes out somewhere, most likely after one more reflection.
-    outside = dot(outside, outside) > 0.0 ? outside : reflect(inside, back);
+    bool passes = dot(outside, outside) > 0.0;
+    outside = passes ? outside : reflect(inside, back);
     x.direction = has_back ? outside : x.direction;
+    x.back = has_back ? face_at(uv, back) : x.back;
+    x.kept = passes ? x.kept : x.back;
     return x;
 }
 
-// How far a projected point is in front of the opaque surface of its pixel, along the optical axis.
-float gap_at(vec3 p) {
+// How far a projected point is in front of the opaque surface of its pixel, along the optical axis. A surface that touches the
+// face, or lies beyond it, is none: a thousandth of the distance is in contact.
+float gap_at(vec3 p, vec4 face) {
     float d = textureLod(u_behind_depth, p.xy / u_size, 0.0).r;
-    return (d > 0.0 ? distance_of(d) : 1e30) - p.z;
+    vec3 v = view_position(floor(p.xy) + 0.5, max(d, 1e-30));
+    bool is_in_front = d > 0.0 && dot(face.xyz, v) + face.w > 0.001 * p.z;
+    return (is_in_front ? -v.z : 1e30) - p.z;
 }
 
 // Whether a projected point is behind the opaque surface of its pixel: a thousandth of the distance in front of it counts, so
@@ -92,11 +112,12 @@ float gap_at(vec3 p) {
 bool is_met(vec3 p, float gap) { return gap <= 0.001 * p.z; }
 
 // The opaque surface that a ray meets within a length, as pixel and distance; z is 0 when it meets none, and where it is not
-// `needed`. w is 1 within the picture: beyond its border the surface that was last passed is taken to go on.
-vec4 march(vec3 origin, vec3 direction, float reach, bool needed) {
+// `needed`. w is 1 within the picture: beyond its border the surface that was last passed is taken to go on. The ray stays on
+// one side of a face.
+vec4 march(vec3 origin, vec3 direction, float reach, vec4 face, bool needed) {
     const int steps = 24;
     vec3 before = projected(origin), low = before, high = before, hit = vec3(0.0);
-    float gap_before = gap_at(before);
+    float gap_before = gap_at(before, face);
     bool going = needed, unmet = needed;
     for (int i = 1; i <= steps; ++i) {
         if (!any_lane(going)) break;
@@ -111,7 +132,7 @@ vec4 march(vec3 origin, vec3 direction, float reach, bool needed) {
             hit = leaves && d > 0.0 ? vec3(border, distance_of(d)) : hit;
             going = going && !leaves;
         }
-        float gap = gap_at(p);
+        float gap = gap_at(p, face);
         // Not when the ray goes away from the surface.
         bool meets = going && is_met(p, gap) && gap < gap_before;
         low = meets ? before : low;
@@ -127,12 +148,12 @@ vec4 march(vec3 origin, vec3 direction, float reach, bool needed) {
     float span = abs(high.z - low.z);
     for (int k = 0; k < 5; ++k) {
         vec3 middle = 0.5 * (low + high);
-        bool meets = is_met(middle, gap_at(middle));
+        bool meets = is_met(middle, gap_at(middle, face));
         high = meets ? middle : high;
         low = meets ? low : middle;
     }
     // Far in front of the ray: it passes behind that surface, which is none of its own.
-    bool is_own = gap_at(high) > -0.25 * span - 0.02 * high.z;
+    bool is_own = gap_at(high, face) > -0.25 * span - 0.02 * high.z;
     vec4 met = is_own ? vec4(high, 1.0) : vec4(0.0);
     return has_met ? met : vec4(hit, 0.0);
 }
@@ -150,7 +171,7 @@ vec3 scattered_direction(vec3 direction, float alpha) {
 }
 
 // Radiance and coverage of what is seen along a ray that has left the surface, unless it has met something `within` it.
-vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha, vec4 within) {
+vec4 seen(vec3 origin, vec3 direction, vec4 face, bool straight, float alpha, vec4 within) {
     direction = scattered_direction(direction, alpha);
     float own = projected(origin).z;
     float d = textureLod(u_behind_depth, gl_FragCoord.xy / u_size, 0.0).r;
@@ -158,7 +179,7 @@ vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha, vec4 within) 
     vec2 turned = straight ? u_lobe_sample : vec2(0.0);
     bool marches = !straight && within.w < 0.5;
     if (any_lane(marches)) {
-        vec4 beyond = march(origin, direction, u_behind_reach, marches);
+        vec4 beyond = march(origin, direction, u_behind_reach, face, marches);
         hit = marches ? beyond.xyz : hit;
     }
     hit = within.w > 0.5 ? within.xyz : hit;
@@ -190,18 +211,19 @@ Through through_surface(Surface s, float ior) {
     t.part = s.through * s.keep;
     vec3 position = s.position, direction = -s.view;
     bool is_volume = e.thickness > 0.0;
-    vec4 within = vec4(0.0);
+    vec4 within = vec4(0.0), face = no_face;
     if (any_lane(is_volume)) {
         vec3 normal = dot(s.normal, s.view) > 0.0 ? s.normal : -s.normal;
         Exit x = through_volume(s, normal, ior);
-        within = march(s.position, x.inside, x.path, is_volume);
+        within = march(s.position, x.inside, x.path, x.back, is_volume);
         x.path = within.w > 0.5 ? length_to(within.z, s.position, x) : x.path;
         vec3 left = pow(max(e.transmittance, 1e-6), vec3(x.path / max(e.thickness, 1e-20)));
         t.part = is_volume ? t.part * left : t.part;
         position = is_volume ? x.position : position;
         direction = is_volume ? x.direction : direction;
+        face = is_volume ? x.kept : face;
     }
-    t.light = seen(position, direction, !is_volume || ior == 1.0, rough * rough, within);
+    t.light = seen(position, direction, face, !is_volume || ior == 1.0, rough * rough, within);
     return t;
 }
 
