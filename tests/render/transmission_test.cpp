@@ -1,56 +1,14 @@
 // Light that goes through surfaces: against Fresnel's, Snell's and Beer's laws.
 #include <cmath>
-#include <functional>
 
 #include "easypbr/core/color.h"
-#include "easypbr/scene/settings.h"
+#include "glass_scenes.h"
 #include "lobe_reference.h"
-#include "render_test.h"
 
 namespace easypbr::transmission_test {
 namespace {
 
 using namespace reference;
-
-Material glass(const std::function<void(Material&)>& change = {}) {
-    Material m;
-    m.base_color = Vec3::Ones();
-    m.roughness = 0;
-    m.transmission = 1;
-    if (change) change(m);
-    return m;
-}
-
-Material glowing(const Vec3& color) {
-    Material m;
-    m.base_color = color;
-    m.unlit = true;
-    return m;
-}
-
-Mesh moved(Mesh mesh, const Vec3d& by) {
-    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(by)));
-    return mesh;
-}
-
-Mesh ball(const Material& material) {
-    Mesh sphere = make_sphere(1, 256);
-    sphere.set_material(material);
-    return sphere;
-}
-
-constexpr int size = 96;
-
-struct Ray {
-    Vec3d origin, direction;
-};
-
-Ray ray_of(const Camera& camera, int x, int y) {
-    const Mat4d p = camera.projection_matrix(1);
-    const double nx = (x + 0.5) / size * 2 - 1, ny = 1 - (y + 0.5) / size * 2;
-    const Vec3d view = Vec3d(nx / p(0, 0), ny / p(1, 1), -1).normalized();
-    return {camera.position(), camera.T_world_cam.linear() * view};
-}
 
 /// Calls visit(radiance, ray, normal) for pixels of a picture of the unit sphere.
 template <class Visit>
@@ -67,18 +25,6 @@ size_t for_each_point(const Image& image, const Camera& camera, double least_n_d
             ++count;
         }
     return count;
-}
-
-app::Session session_of(Scene& scene, const Vec3d& from = Vec3d(0.5, 0.8, 4)) {
-    app::Session session = plain_session(scene, size);
-    look_from(session, from, 30);
-    return session;
-}
-
-/// Snell; the direction and the normal on its side.
-Vec3d refracted(const Vec3d& d, const Vec3d& n, double eta) {
-    const double c = -d.dot(n), k = 1 - eta * eta * (1 - c * c);
-    return eta * d + (eta * c - std::sqrt(k)) * n;
 }
 
 // White glass in a uniform environment disappears, whatever its thickness, roughness and index.
@@ -322,45 +268,6 @@ TEST(Transmission, ASlabShifts) {
     const double r = std::asin(std::sin(tilt) / ior), shift = t * std::sin(tilt - r) / std::cos(r);
     // The slab's normal leans to +x: rays bend towards its opposite and leave to the left of where they came.
     EXPECT_NEAR((edge - size / 2.0) * 2.0 / size, shift, 1.5 * 2.0 / size);
-}
-
-// A block of glass on a floor, in the plane of the picture's middle column. A ray that enters its front at an
-// elevation a goes on at b with sin a = 1.5 sin b. It meets the bottom if it enters below d tan b, d being
-// the block's depth. There it is reflected: cos b > 1 / 1.5. It goes up to the environment of radiance 1.
-// Else it leaves through the back to the floor. So there is one edge, although the floor touches the bottom.
-TEST(Transmission, AFloorIsNotSeenThroughABottomThatReflects) {
-    const double side = 0.8, floor = 0.2;
-    Mesh ground = facing_square(8, glowing(Vec3::Constant(float(floor))));
-    ground.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(-pi / 2, Vec3d::UnitX())));
-    Mesh block = make_box(Vec3::Constant(float(side)));
-    block.set_material(glass([](Material& m) { m.thickness = 1; }));
-    Scene scene;
-    scene.show(ground, "ground");
-    scene.show(moved(block, Vec3d(0, side / 2, 0)), "block");
-    scene.set_environment(constant_environment(1));
-    for (const bool native : {true, false}) {
-        app::Session session = session_of(scene, Vec3d(0, 1.2, 4));
-        session.settings().environment.enabled = true;
-        session.allow_native_geometry(native);
-        session.allow_native_shading(native);
-        const Image image = render_linear(session);
-        int bottom = 0, back = 0;
-        for (int y = 0; y < size; ++y) {
-            const Ray ray = ray_of(session.camera(), size / 2, y);
-            const Vec3d p = ray.origin + ray.direction * ((side / 2 - ray.origin.z()) / ray.direction.z());
-            const double edge = side * std::tan(std::asin(-ray.direction.y() / 1.5));
-            // Two pixels around each edge, each of 0.02, are left out.
-            if (p.y() < 0.04 || p.y() > 0.6 || std::abs(p.y() - edge) < 0.04) continue;
-            const bool reflects = p.y() < edge;
-            const double F = schlick(-ray.direction.z(), 0.04);
-            // 0.01: as that of WhatIsWithinIsSeen, for the index of 8 bits.
-            EXPECT_NEAR(image.at<float>(size / 2, y)[0], reflects ? 1 : F + (1 - F) * floor, 0.01)
-                << y << " " << native;
-            ++(reflects ? bottom : back);
-        }
-        EXPECT_GT(bottom, 3);
-        EXPECT_GT(back, 6);
-    }
 }
 
 // Rough glass blurs by its distance to what is behind: an edge becomes the distribution of GGX's slopes along
