@@ -12,7 +12,7 @@ uniform sampler2D u_behind_depth;    // of the opaque surfaces
 uniform sampler2D u_exit_depth;      // of the nearest back faces of volumes behind each pixel; 0: none
 uniform sampler2D u_exit_normal;
 uniform float u_behind_levels;
-uniform float u_behind_reach;      // beyond this distance from the camera there is no geometry
+uniform float u_behind_reach;      // beyond this distance from the camera there is no surface
 uniform vec2 u_lobe_sample;        // in a still: this frame's facet, in units of alpha; else 0
 uniform float u_lobe_share;        // part of the lobe's width that one frame blurs by
 
@@ -111,12 +111,23 @@ float gap_at(vec3 p, vec4 face) {
 // that what stands on a floor sees it.
 bool is_met(vec3 p, float gap) { return gap <= 0.001 * p.z; }
 
-// The opaque surface that a ray meets within a length, as pixel and distance; z is 0 when it meets none, and where it is not
-// `needed`. w is 1 within the picture: beyond its border the surface that was last passed is taken to go on. The ray stays on
+const float far_away = 1e20;
+
+// What a ray that meets nothing goes to: the pixel where it ends, or the nearest to it that is known.
+vec4 vanishing(vec3 origin, vec3 direction, float reach) {
+    vec3 p = projected(origin + direction * (1e3 * reach));
+    vec2 pixel = p.z > 0.0 ? p.xy : gl_FragCoord.xy;
+    pixel = clamp(clamp(pixel, gl_FragCoord.xy - u_reach, gl_FragCoord.xy + u_reach), vec2(0.5), u_size - 0.5);
+    return vec4(pixel, far_away, 0.0);
+}
+
+// The opaque surface that a ray meets within a length, as pixel and distance, and 1. Beyond the picture's border the surface
+// that was last passed is taken to go on: w is 0.5. w is 0 when it meets none, and where it is not `needed`. The ray stays on
 // one side of a face.
 vec4 march(vec3 origin, vec3 direction, float reach, vec4 face, bool needed) {
     const int steps = 24;
-    vec3 before = projected(origin), low = before, high = before, hit = vec3(0.0);
+    vec3 before = projected(origin), low = before, high = before;
+    vec4 hit = vanishing(origin, direction, reach);
     float gap_before = gap_at(before, face);
     bool going = needed, unmet = needed;
     for (int i = 1; i <= steps; ++i) {
@@ -129,7 +140,7 @@ vec4 march(vec3 origin, vec3 direction, float reach, vec4 face, bool needed) {
             // What the ray was in front of at the picture's border is taken to go on beyond it.
             vec2 border = clamp(before.xy, vec2(0.5), u_size - 0.5);
             float d = textureLod(u_behind_depth, border / u_size, 0.0).r;
-            hit = leaves && d > 0.0 ? vec3(border, distance_of(d)) : hit;
+            hit = leaves && d > 0.0 ? vec4(border, distance_of(d), 0.5) : hit;
             going = going && !leaves;
         }
         float gap = gap_at(p, face);
@@ -143,7 +154,7 @@ vec4 march(vec3 origin, vec3 direction, float reach, vec4 face, bool needed) {
         gap_before = gap;
     }
     bool has_met = needed && !unmet;
-    if (!any_lane(has_met)) return vec4(hit, 0.0);
+    if (!any_lane(has_met)) return hit;
     // Between the last two points, by the distances to the surface.
     float span = abs(high.z - low.z);
     for (int k = 0; k < 5; ++k) {
@@ -154,8 +165,7 @@ vec4 march(vec3 origin, vec3 direction, float reach, vec4 face, bool needed) {
     }
     // Far in front of the ray: it passes behind that surface, which is none of its own.
     bool is_own = gap_at(high, face) > -0.25 * span - 0.02 * high.z;
-    vec4 met = is_own ? vec4(high, 1.0) : vec4(0.0);
-    return has_met ? met : vec4(hit, 0.0);
+    return has_met && is_own ? vec4(high, 1.0) : hit;
 }
 
 vec4 picture_at(vec2 pixel, float radius) {
@@ -175,17 +185,18 @@ vec4 seen(vec3 origin, vec3 direction, vec4 face, bool straight, float alpha, ve
     direction = scattered_direction(direction, alpha);
     float own = projected(origin).z;
     float d = textureLod(u_behind_depth, gl_FragCoord.xy / u_size, 0.0).r;
-    vec3 hit = vec3(gl_FragCoord.xy, d > 0.0 ? distance_of(d) : 1e20 * own);
+    vec4 hit = vec4(gl_FragCoord.xy, d > 0.0 ? distance_of(d) : far_away, 1.0);
     vec2 turned = straight ? u_lobe_sample : vec2(0.0);
     bool marches = !straight && within.w < 0.5;
     if (any_lane(marches)) {
         vec4 beyond = march(origin, direction, u_behind_reach, face, marches);
-        hit = marches ? beyond.xyz : hit;
+        hit = marches ? beyond : hit;
     }
-    hit = within.w > 0.5 ? within.xyz : hit;
+    hit = within.w > 0.5 ? within : hit;
     float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(max(hit.z, 1e-20)), min(u_picture.w, 0.25 * u_reach));
     vec4 picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
-    picture = hit.z > 0.0 ? picture : vec4(0.0);
+    // A lobe around a ray that meets nothing sees what is beside it.
+    picture *= hit.w > 0.0 ? 1.0 : clamp(width * u_lobe_share - 1.0, 0.0, 1.0);
     if (is_before_color) return vec4(picture.rgb + (1.0 - picture.a) * u_background, 1.0);
     if (!has_environment) return picture;
     vec3 environment = prefiltered(direction, sqrt(alpha * u_lobe_share));

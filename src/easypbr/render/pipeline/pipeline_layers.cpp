@@ -25,7 +25,7 @@ DrawList shaded_points(const DrawList& layers) {
 /// What layers need to be seen through.
 struct SeeThrough {
     bool any = false, rough = false, volumes = false;
-    double reach = 0;  ///< of geometry, from the camera
+    double reach = 0;  ///< of geometry and a ground plane, from the camera
 
     SeeThrough(const Frame& frame, const DrawList& layers, const Box3d& bounds) {
         const auto meshes = layers.of(DrawMode::mesh);
@@ -33,6 +33,9 @@ struct SeeThrough {
         rough = std::ranges::any_of(meshes, &DrawItem::blurs_behind);
         volumes = any && std::ranges::any_of(meshes, &DrawItem::is_volume);
         reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
+        const ResolvedSettings& resolved = *frame.resolved;
+        if (GroundPass::is_on(resolved) && !GroundPass::is_shadow_catcher(resolved))
+            reach += double(resolved.settings.ground.radius);
     }
 };
 
