@@ -5,9 +5,10 @@
 #include "glass_scenes.h"
 #include "lobe_reference.h"
 
-namespace easypbr::transmission_test {
+namespace easypbr::transmission_ground_test {
 namespace {
 
+using namespace transmission_test;
 using namespace reference;
 
 // A block of glass on a floor, in the plane of the picture's middle column. A ray that enters its front at an
@@ -120,4 +121,4 @@ TEST(TransmissionOfGround, ARoughBallShowsNoEdge) {
 }
 
 }  // namespace
-}  // namespace easypbr::transmission_test
+}  // namespace easypbr::transmission_ground_test
