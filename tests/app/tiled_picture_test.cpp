@@ -76,6 +76,9 @@ Mesh cloud() {
     }
     MeshData data;
     data.V = Array3f(V);
+    data.materials.resize(1);
+    data.materials[0].base_color.setConstant(
+        0.61f);  // not the default, which is drawn darker: as bright as meshes
     return Mesh(data);
 }
 

@@ -58,10 +58,11 @@ class MotionPanels : public testing::Test {
         event.key = code;
         step({event});
     }
-    void click(const std::string& name) {
+    void click(const std::string& name, bool control = false) {
         const auto place = view_.places().find(name);
         ASSERT_NE(place, view_.places().end()) << name;
         InputEvent event;
+        event.control = control;
         event.position = place->second.center();
         for (const Kind kind : {Kind::move, Kind::press, Kind::release}) {
             event.kind = kind;

@@ -331,7 +331,7 @@ TEST_F(MotionPanels, ASpeedThatIsTypedStaysInItsRange) {
         event.key = app::key::left_control;
         event.control = true;
         step({event});
-        click("Animations/speed");
+        click("Animations/speed", true);
         event.kind = Kind::key_up;
         event.control = false;
         step({event});
