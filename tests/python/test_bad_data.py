@@ -90,8 +90,9 @@ def test_an_empty_cloud_is_nothing_to_show(positions):
 
 @pytest.mark.parametrize("count", [1, 9])
 def test_points_at_one_place_are_a_dot(count):
-    # A disc 8 pixels wide: 50 pixels, and its circle of 25 pixels runs through some more or less.
-    assert 42 <= drawn_share(mesh_of(V=[[1, 2, 3]] * count)) * 200 * 150 <= 58
+    # A disc 8 pixels wide: 50 pixels, and it touches 69 where its centre is that of a pixel. Of those that its circle runs
+    # through, some are too faint to count.
+    assert 42 <= drawn_share(mesh_of(V=[[1, 2, 3]] * count)) * 200 * 150 <= 69
 
 
 def test_numbers_beyond_single_precision_are_named():
