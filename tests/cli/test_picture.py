@@ -75,7 +75,7 @@ def test_background_may_be_the_environment(picture, sphere, constant, mode):
 @pytest.mark.parametrize("exposure", ["1", "0.5"])
 def test_exposure_is_a_factor_on_radiance(picture, sphere, constant, exposure):
     pixels = picture(sphere, "--env", constant, "--color", "white", "--metallic", "1", "--roughness", "0.5",
-                     "--tonemap", "none", "--exposure", exposure)
+                     "--tonemap", "none", "--exposure", exposure, "--set", "ground.mode=none")
     # 1.5: rounding to 8 bits, and 0.5 % of radiance, which is 0.5 codes here.
     assert abs(pixels[24, 32, :3] - srgb8(0.7 * float(exposure))).max() <= 1.5
 
