@@ -39,14 +39,14 @@ float pixels_per_unit(float distance) {
 }
 
 // A plane in view space that a ray stays on one side of: dot(xyz, p) + w is above 0 there.
-const vec4 no_face = vec4(0.0, 0.0, 0.0, 1e30);
+vec4 no_face() { return vec4(0.0, 0.0, 0.0, 1e30); }
 
 struct Exit {
     vec3 position, direction;  // where the ray goes on, relative to the camera
     vec3 inside;               // its direction within the volume
     float path;                // length within the volume
     vec4 back;                 // the face that it meets from within
-    vec4 kept;                 // the same if it is reflected there, else no_face
+    vec4 kept;                 // the same if it is reflected there, else no_face()
 };
 
 // The plane of the back face at a place in the picture; `normal` looks into the volume.
@@ -65,8 +65,8 @@ Exit through_volume(Surface s, vec3 normal, float ior) {
     x.path = e.thickness;
     x.position = s.position + inside * x.path;
     x.direction = -s.view;  // a slab's other side, unless the true one is known
-    x.back = no_face;
-    x.kept = no_face;
+    x.back = no_face();
+    x.kept = no_face();
     vec2 uv = gl_FragCoord.xy / u_size;
     float exit_depth = textureLod(u_exit_depth, uv, 0.0).r;
     bool has_back = exit_depth > 0.0;
@@ -222,7 +222,7 @@ Through through_surface(Surface s, float ior) {
     t.part = s.through * s.keep;
     vec3 position = s.position, direction = -s.view;
     bool is_volume = e.thickness > 0.0;
-    vec4 within = vec4(0.0), face = no_face;
+    vec4 within = vec4(0.0), face = no_face();
     if (any_lane(is_volume)) {
         vec3 normal = dot(s.normal, s.view) > 0.0 ? s.normal : -s.normal;
         Exit x = through_volume(s, normal, ior);
