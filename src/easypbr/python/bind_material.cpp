@@ -84,8 +84,9 @@ void set_alpha_mode(MaterialHandle& m, const std::string& mode) {
                               {"opaque", AlphaMode::opaque},
                               {"mask", AlphaMode::mask},
                               {"blend", AlphaMode::blend}};
-    for (const auto& [name, alpha_mode] : choices)
-        if (same_letters(name, mode)) return m.change([&](Material& own) { own.alpha_mode = alpha_mode; });
+    for (const Choice& choice : choices)
+        if (same_letters(choice.first, mode))
+            return m.change([&](Material& own) { own.alpha_mode = choice.second; });
     throw ArgumentError(
         fmt::format("material.alpha_mode: expected auto, opaque, mask or blend, got '{}'", mode));
 }
