@@ -116,7 +116,7 @@ TEST(MirroredGround, IsThePlaneInItsLight) {
 }
 
 // A wall has the horizon in the middle of its lobe, whatever the roughness: half of the sky's light is left.
-// 0.01: the split sum's table, and the lobe that leans towards the normal.
+// 0.01: the interpolation of the DFG table, and the shift of the dominant direction towards the normal.
 TEST(MirroredGround, FillsHalfOfAWallsLobe) {
     for (const float roughness : {0.1f, 0.4f, 0.7f}) {
         Scene scene;

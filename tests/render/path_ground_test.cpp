@@ -32,21 +32,28 @@ Material surface(float metallic, float roughness) {
     return m;
 }
 
-app::Session session_of_wall(const Material& material, const Environment& sky, GroundMode mode) {
-    Scene scene;
-    scene.show(facing_square(1, material), "wall");
-    scene.set_environment(sky);
+/// Of paths over a ground that reflects nothing.
+app::Session session_of_paths(const Scene& scene, GroundMode mode, double ground_height) {
     app::Session session = plain_session(scene, size);
     Settings& s = session.settings();
     s.path.enabled = true;
     s.path.clamp = 0;
     s.path.denoise = Denoising::off;
-    s.shadows.enabled = true;
     s.environment.enabled = true;
     s.shading.dielectric_f0 = 0;
     s.ground.mode = mode;
-    s.ground.height = -height;
+    s.ground.height = ground_height;
     s.ground.plane_color = Vec3::Zero();
+    return session;
+}
+
+app::Session session_of_wall(const Material& material, const Environment& sky, GroundMode mode) {
+    Scene scene;
+    scene.show(facing_square(1, material), "wall");
+    scene.set_environment(sky);
+    app::Session session = session_of_paths(scene, mode, -height);
+    Settings& s = session.settings();
+    s.shadows.enabled = true;
     s.ground.radius = 1e6f;  // a plane is open by 1e-4 of a right angle above its edge
     look_from(session, Vec3d(0, 0, 5), 10);
     return session;
@@ -140,16 +147,8 @@ TEST(PathGround, APlaneFades) {
     ball.set_material(surface(1, 0));
     scene.show(ball, "ball");
     scene.set_environment(constant_environment(1));
-    app::Session session = plain_session(scene, size);
+    app::Session session = session_of_paths(scene, GroundMode::plane, -1.5);
     Settings& s = session.settings();
-    s.path.enabled = true;
-    s.path.clamp = 0;
-    s.path.denoise = Denoising::off;
-    s.environment.enabled = true;
-    s.shading.dielectric_f0 = 0;
-    s.ground.mode = GroundMode::plane;
-    s.ground.height = -1.5;
-    s.ground.plane_color = Vec3::Zero();
     s.ground.radius = 3.1157f / 0.7f;
     s.camera.position = Vec3d(0, -0.25882, 4.6);
     s.camera.target = Vec3d(0, -0.25882, 0);

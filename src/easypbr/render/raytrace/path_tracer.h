@@ -72,9 +72,9 @@ class PathTracer {
     /// hides what is below; one that catches shadows shows the sky where it is open.
     bool arrives(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
                  float distance) const;
-    /// Whether paths that were scattered so see the sky alone in a ground that catches shadows. Where they
-    /// see a background of one colour, too, sampled directions alone find what is left of the sky: there the
-    /// lobes are known apart.
+    /// Whether paths of this scattering see only the sky in a shadow catcher. Then next-event estimation
+    /// looks for the sky there, too. Before a background of one colour BSDF sampling alone does: only it
+    /// tells the specular lobe, which sees the colour, from the diffuse one.
     bool sees_sky_in_ground(Scattering scattered) const;
     /// A ray that looks whether such a ground is open to the sky where a path has met it.
     RaySegment upwards(const Vec3& position, const PathState& state, uint32_t depth) const;
