@@ -68,6 +68,30 @@ TEST(Fields, AreDocumentedOnce) {
     }
 }
 
+TEST(Fields, AreComparedEachWithItsState) {
+    const Settings defaults;
+    EXPECT_TRUE(are_equal(defaults, Settings{}));
+    for (const Field& field : fields()) {
+        Settings settings;
+        EXPECT_TRUE(field.same(settings, defaults)) << field.name;
+        field.put(settings, other_value(field));
+        EXPECT_FALSE(field.same(settings, defaults)) << field.name;
+        EXPECT_FALSE(are_equal(settings, defaults)) << field.name;
+        for (const Field& other : fields())
+            EXPECT_EQ(other.same(settings, defaults), &other != &field) << field.name;
+        if (!field.can_be_automatic || !field.is_kept) continue;
+        // The same number, given and latched.
+        Value latched = other_value(field);
+        latched.state = Value::State::automatic;
+        latched.latched = true;
+        Settings inferred;
+        field.put(inferred, latched);
+        if (field.get(inferred).latched) {
+            EXPECT_FALSE(field.same(settings, inferred)) << field.name;
+        }
+    }
+}
+
 // Every member of every struct, counted in settings.h; one line per group, so that changes of different
 // groups do not meet.
 TEST(Fields, AreComplete) {

@@ -50,6 +50,8 @@ struct FieldOf : FieldInfo {
     std::function<Value(const Owner&)> get;
     /// Sets an already checked value.
     std::function<void(Owner&, const Value&)> put;
+    /// Whether two owners' members are equal, latched values included: without a Value, so quickly.
+    std::function<bool(const Owner&, const Owner&)> same;
 };
 
 /// A field of the settings.
@@ -71,6 +73,9 @@ const Field& field(std::string_view name);
 void set(Settings& settings, std::string_view name, const Value& value);
 Value get(const Settings& settings, std::string_view name);
 Value get(const InferredSettings& settings, std::string_view name);
+
+/// Whether all fields are equal, latched values included.
+bool are_equal(const Settings& a, const Settings& b);
 
 /// Whether the data of a value are in the field's range, and finite.
 bool is_valid(const Field& field, const Value& value);

@@ -1,5 +1,7 @@
 #include "easypbr/app/history.h"
 
+#include <algorithm>
+
 #include "easypbr/core/error.h"
 #include "easypbr/scene/settings.h"
 
@@ -12,6 +14,7 @@ bool same_choice(const Value& a, const Value& b) {
 std::vector<std::pair<std::string, Value>> changed_choices(const Settings& before, const Settings& now) {
     std::vector<std::pair<std::string, Value>> changed;
     for (const Field& field : fields()) {
+        if (field.same(before, now)) continue;
         Value x = field.get(before), y = field.get(now);
         if (!same_choice(x, y)) changed.emplace_back(field.name, std::move(y));
     }
@@ -19,7 +22,9 @@ std::vector<std::pair<std::string, Value>> changed_choices(const Settings& befor
 }
 
 bool same_choices(const Settings& a, const Settings& b) {
-    return changed_choices(a, b).empty();
+    return std::ranges::all_of(fields(), [&](const Field& field) {
+        return field.same(a, b) || same_choice(field.get(a), field.get(b));
+    });
 }
 
 bool History::is_present(const Settings& settings, const Choices& choices) const {

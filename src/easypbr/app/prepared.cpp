@@ -34,13 +34,21 @@ bool same_images(const render::SettingsImages& a, const render::SettingsImages& 
            a.shader_files == b.shader_files && std::ranges::all_of(replaceable_textures(), same_texture);
 }
 
-}  // namespace
-
-bool same_picture(const Prepared& a, const Prepared& b) {
+bool same_but_lights(const Prepared& a, const Prepared& b) {
     const render::DrawOptions &x = a.options, &y = b.options;
     return x.size == y.size && x.samples == y.samples && x.encoding == y.encoding && x.motion == y.motion &&
-           a.passes == b.passes && same_images(a.images, b.images) && same_scene(a.scene, b.scene) &&
-           a.resolved.lights == b.resolved.lights && same_settings(a.resolved.settings, b.resolved.settings);
+           a.passes == b.passes && same_images(a.images, b.images) && same_scene(a.scene, b.scene);
+}
+
+}  // namespace
+
+bool same_content(const Prepared& a, const Prepared& b) {
+    return same_but_lights(a, b) && a.scene.lights == b.scene.lights;
+}
+
+bool same_picture(const Prepared& a, const Prepared& b) {
+    return same_but_lights(a, b) && a.resolved.lights == b.resolved.lights &&
+           same_settings(a.resolved.settings, b.resolved.settings);
 }
 
 }  // namespace easypbr::app

@@ -145,24 +145,31 @@ ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
 }
 
 Prepared Session::prepare(const PictureOptions& options) {
+    Prepared prepared = gather(options);
+    infer(prepared);
+    return prepared;
+}
+
+Prepared Session::gather(const PictureOptions& options) {
     timing_ = {};
     Prepared prepared;
     prepared.options.size = size_or(options.size);
     prepared.options.samples = options.samples.value_or(settings_->image.samples);
     prepared.options.encoding = options.encoding;
     check_picture_size(prepared.options.size);
-    {
-        const Stopwatch watch(timing_.images);
-        prepared.scene = snapshot();
-        prepared.images = files_.images();
-    }
+    for (const render::CustomPass& custom : passes_)
+        prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());
+    const Stopwatch watch(timing_.images);
+    prepared.scene = snapshot();
+    prepared.images = files_.images();
+    return prepared;
+}
+
+void Session::infer(Prepared& prepared) {
     const Stopwatch watch(timing_.draw);
     prepared.resolved = resolve_framed(prepared.scene, prepared.options.size, prepared.options.samples);
     latched_content_.follow(prepared.scene, *settings_, prepared.resolved);
     warnings_.check(prepared.scene, *settings_, prepared.resolved);
-    for (const render::CustomPass& custom : passes_)
-        prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());
-    return prepared;
 }
 
 TiledPicture Session::tiled(const Prepared& prepared) const {
@@ -289,11 +296,16 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
 }
 
 uint64_t Session::picture_version(std::optional<Vec2i> size) {
-    Prepared prepared = prepare({size, 1, Encoding::srgb8});
-    if (!version_.of || !same_picture(*version_.of, prepared)) {
-        version_.of = std::make_unique<Prepared>(std::move(prepared));
-        ++version_.number;
-    }
+    Prepared prepared = gather({size, 1, Encoding::srgb8});
+    // A view at rest asks several times a second: to infer the same again takes most of the time.
+    const bool is_known = version_.of && version_.insets == insets_ && same_content(*version_.of, prepared) &&
+                          are_equal(*version_.settings, *settings_);
+    if (is_known) return version_.number;
+    infer(prepared);
+    if (!version_.of || !same_picture(*version_.of, prepared)) ++version_.number;
+    version_.of = std::make_unique<Prepared>(std::move(prepared));
+    version_.settings = std::make_unique<Settings>(*settings_);
+    version_.insets = insets_;
     return version_.number;
 }
 

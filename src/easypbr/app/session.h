@@ -214,6 +214,10 @@ class Session {
   private:
     /// Snapshot, images, auto parameters.
     Prepared prepare(const PictureOptions& options);
+    /// All but the auto parameters.
+    Prepared gather(const PictureOptions& options);
+    /// The auto parameters of what is gathered.
+    void infer(Prepared& prepared);
     SceneSnapshot snapshot();
     /// An automatic camera that is not latched yet leaves the insets and the annotation's strip free.
     ResolvedSettings resolve_framed(const SceneSnapshot& scene, Vec2i size,
@@ -255,6 +259,8 @@ class Session {
     /// What picture_version() saw last.
     struct Version {
         std::unique_ptr<Prepared> of;
+        std::unique_ptr<Settings> settings;  ///< that it was inferred from
+        Insets insets;
         uint64_t number = 0;
     };
     Version version_;

@@ -45,6 +45,7 @@ double View::step(bool refines) {
     }
     // What the line holds back is drawn later, with the newest camera.
     if (waits_for_clients()) return 0.1;
+    const double begun = now_seconds();
     act(inbox_.take(clients_.view()));
     draw(refines);
     tell_changes();
@@ -52,7 +53,7 @@ double View::step(bool refines) {
     if ((own.live.is_busy() && !is_held) || has_orders()) return 0;
     const bool waits = is_moving() || own.owes_still || own.live.recording().is_running();
     // Input wakes it at once: what is looked for is what the program changes.
-    return waits ? 0.01 : rests(3) ? 6 * look_s : rests(1) ? 2 * look_s : look_s;
+    return waits ? 0.01 : std::clamp(100 * (now_seconds() - begun), look_s, longest_look_s);
 }
 
 bool View::is_quick() const {
@@ -64,8 +65,8 @@ bool View::wants_refinement() const {
     return clients_.anybody_looks() && !is_quick() && !picture.has_failed() && !picture.is_complete();
 }
 
-bool View::rests(double seconds) const {
-    return now_seconds() - std::max(own_->acted_s, own_->last_change_s) > seconds;
+bool View::rests() const {
+    return now_seconds() - std::max(own_->acted_s, own_->last_change_s) > 1;
 }
 
 bool View::is_moving() const {
@@ -199,12 +200,9 @@ void View::tell_changes() {
     Own& own = *own_;
     const double now = now_seconds();
     // At rest only what leaves the picture as it is can have changed.
-    if (now - own.told_s < (rests(1) ? 0.5 : 0.1) && !own.told.empty()) return;
+    if (now - own.told_s < (rests() ? 0.5 : 0.1) && !own.told.empty()) return;
     own.told_s = now;
-    const FieldTexts texts = texts_of(own.session.settings());
-    if (const FieldTexts news = changed(own.told, texts); !news.empty())
-        clients_.broadcast(settings_text(news));
-    own.told = texts;
+    tell_settings();
     const auto tell = [&](std::string& last, std::string text) {
         if (last == text) return;
         last = std::move(text);
@@ -217,6 +215,18 @@ void View::tell_changes() {
     for (const ToolText& news : own.tools.news()) clients_.broadcast(news.text, news.for_watchers);
     tell_notices();
     tell(own.told_statistics, own.statistics_message(clients_));
+}
+
+void View::tell_settings() {
+    Own& own = *own_;
+    const Settings& settings = own.session.settings();
+    // Texts of all fields are the larger part of what a view at rest would cost.
+    if (!own.told.empty() && are_equal(own.told_settings, settings)) return;
+    const FieldTexts texts = texts_of(settings);
+    if (const FieldTexts news = changed(own.told, texts); !news.empty())
+        clients_.broadcast(settings_text(news));
+    own.told = texts;
+    own.told_settings = settings;
 }
 
 void View::tell_everything(ClientId client) {

@@ -58,15 +58,16 @@ class View {
     static constexpr double longest_frame_s = 0.045;
     /// Stills that are drawn before others get their turn; more that wait meanwhile are refused.
     static constexpr int most_stills = 2;
-    /// How often an idle view looks whether the scene is another one.
-    static constexpr double look_s = 0.05;
+    /// How often an idle view looks whether the scene is another one: so rarely that it takes 1 % of a core,
+    /// within these bounds.
+    static constexpr double look_s = 0.05, longest_look_s = 0.3;
 
   private:
     struct Own;
     bool has_orders() const { return inbox_.has_orders(clients_.view()); }
     bool waits_for_clients() const;
-    /// Nothing has been asked for and nothing has changed for so long: the scene is looked at less often.
-    bool rests(double seconds) const;
+    /// Nothing has been asked for and nothing has changed for a second: changes are told less often.
+    bool rests() const;
     void act(const std::vector<Order>& orders);
     void obey(const Order& order);
     void obey(ClientId from, const Hello& message);
@@ -96,6 +97,7 @@ class View {
     FrameHeader header(FrameKind kind, Codec codec);
     void send_video();
     void tell_changes();
+    void tell_settings();
     void tell_everything(ClientId client);
     void tell_notices();
     bool is_moving() const;

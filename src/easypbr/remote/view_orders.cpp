@@ -61,8 +61,16 @@ void View::Own::keep_drawable(const Settings& before) {
 }
 
 std::string View::Own::camera_message() try {
-    if (session.scene().names().empty()) return remote::camera_message({});
-    return remote::camera_message(app::camera_text(session, size));
+    if (session.scene().names().empty()) {
+        camera = {};
+        return remote::camera_message({});
+    }
+    // The camera is a part of the picture; what of it is written depends on the settings too.
+    const uint64_t version = session.picture_version(size);
+    const bool is_known = camera.version == version && are_equal(camera.settings, session.settings());
+    if (!is_known)
+        camera = {version, session.settings(), remote::camera_message(app::camera_text(session, size))};
+    return camera.message;
 } catch (const Error&) {
     return told_camera;
 }

@@ -43,6 +43,14 @@ struct View::Own {
     bool has_news = false;    ///< what is shown at rest has not been sent at all
 
     FieldTexts told;
+    Settings told_settings;  ///< that `told` was written from
+    /// What the camera's message was written from, and the message.
+    struct WrittenCamera {
+        uint64_t version = 0;  ///< Session::picture_version()
+        Settings settings;
+        std::string message;
+    };
+    WrittenCamera camera;
     std::map<std::string, PanelMemory> panel_memories;
     std::string told_camera, told_scene, told_animation, told_panels, told_statistics;
     double acted_s = 0;  ///< when a client asked for something last

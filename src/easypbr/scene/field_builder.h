@@ -261,6 +261,7 @@ void make(FieldOf<Owner>& field, std::string_view name, Access access, std::stri
     field.max = std::min(field.max, range.max);
     field.get = [access](const Owner& owner) { return to_value(access(owner)); };
     field.put = [access](Owner& owner, const Value& value) { from_value(value, access(owner)); };
+    field.same = [access](const Owner& a, const Owner& b) { return access(a) == access(b); };
 }
 
 /// The same for one of all kinds of access that have the same types.

@@ -252,6 +252,10 @@ const Field& field(std::string_view name) {
     return *found->second;
 }
 
+bool are_equal(const Settings& a, const Settings& b) {
+    return std::ranges::all_of(fields(), [&](const Field& field) { return field.same(a, b); });
+}
+
 bool is_valid(const Field& field, const Value& value) {
     return is_allowed(field, value.data);
 }

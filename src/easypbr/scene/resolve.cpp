@@ -172,14 +172,18 @@ void require_representable(const SceneSnapshot& scene, const ResolvedSettings& r
                     name, reach));
 }
 
+const Settings& default_settings() {
+    static const Settings defaults;
+    return defaults;
+}
+
 }  // namespace
 
 bool detail::is_asked_for(const Settings& given, std::string_view group) {
-    static const Settings defaults;
     return std::ranges::any_of(fields(), [&](const Field& field) {
-        if (!field.name.starts_with(group)) return false;
+        if (!field.name.starts_with(group) || field.same(given, default_settings())) return false;
         const Value value = field.get(given);
-        return value.state == Value::State::given && value != field.get(defaults);
+        return value.state == Value::State::given && value != field.get(default_settings());
     });
 }
 
@@ -188,7 +192,8 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     if (size.minCoeff() < 1 || size.maxCoeff() > max_image_side)
         throw ArgumentError(fmt::format("picture size: expected width and height from 1 to {}, got {}x{}",
                                         max_image_side, size.x(), size.y()));
-    for (const Field& field : fields()) checked(field, field.get(given));
+    for (const Field& field : fields())
+        if (!field.same(given, default_settings())) checked(field, field.get(given));
     require_poses(scene);
     const detail::Content content(scene, given.style);
     Settings settings = given;
