@@ -35,8 +35,9 @@ float V_smith_anisotropic(vec3 v, vec3 l, vec2 alpha) {
     return 0.5 / (l.z * length(vec3(alpha * v.xy, v.z)) + v.z * length(vec3(alpha * l.xy, l.z)));
 }
 
-// KHR_materials_sheen: Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF". Below this roughness the fit
-// of its shadowing gives back more than it gets by far.
+// KHR_materials_sheen: Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF". The table of its albedo is made
+// from the same formulas and the same limit in gpu/tools/generate_dfg.cpp: change both. Below this roughness the fit of its
+// shadowing gives back more than it gets by far.
 const float least_sheen_roughness = 0.07;
 
 float D_charlie(float n_dot_h, float roughness) {

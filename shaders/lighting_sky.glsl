@@ -82,7 +82,7 @@ vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec
     return lobe * specular_visibility(n_dot_v, alpha, visibility, f0);
 }
 
-// Average radiance in the lobe of the sheen, which is as wide as the sky.
+// What arrives of the sky's light in the lobe of the sheen: occluded, or with traced light in place of what is hidden.
 vec3 sheen_light(vec3 lobe, float visibility) {
     if (has_traced_light) lobe = lobe * traced(u_sky_visibility) + indirect_diffuse();
     return lobe * visibility;

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _easypbr
+from .arguments import chosen
 from .errors import ArgumentError, ContextError
 
 
@@ -49,13 +50,11 @@ def _plain(array: Any) -> Any:
 
 def converter(name: str, device: str = "cpu") -> Callable[..., Any]:
     """A function from numpy arrays to those of "numpy" or "torch", without a copy."""
-    if name.lower() == "numpy":
+    if chosen("as_", name, ("numpy", "torch")) == "numpy":
         if device != "cpu":
             raise ArgumentError(f"device: numpy's arrays are the CPU's: expected as_='torch' with device '{device}'")
         return lambda array: array
-    if name.lower() == "torch":
-        return _torch().from_numpy
-    raise ArgumentError(f"as_: expected 'numpy' or 'torch', got '{name}'")
+    return _torch().from_numpy
 
 
 def check_device(device: str) -> Any:

@@ -1,8 +1,12 @@
 // Session::picture_version() infers again only where something has changed: nothing that is drawn may be
 // overlooked.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <functional>
+#include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,12 +14,25 @@
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app::picture_version_test {
 namespace {
+
+namespace fs = std::filesystem;
+
+class TextureFile {
+  public:
+    TextureFile() { io::save_image(Image(2, 2, 3, PixelType::u8), path_); }
+    ~TextureFile() { fs::remove(path_); }
+    std::string name() const { return path_.string(); }
+
+  private:
+    fs::path path_ = fs::temp_directory_path() / ("easypbr_version_" + std::to_string(::getpid()) + ".png");
+};
 
 Session drawn_session() {
     Scene scene;
@@ -33,6 +50,10 @@ Session drawn_session() {
 
 TEST(PictureVersion, RisesWithWhateverIsDrawn) {
     using Change = std::function<void(Session&)>;
+    const TextureFile texture;
+    const auto tint = std::make_shared<ShaderPass>("tint",
+                                                   "uniform float u_part;\nlayout(location = 0) out vec4 "
+                                                   "o_color;\nvoid main() { o_color = vec4(u_part); }");
     const std::vector<std::pair<const char*, Change>> changes = {
         {"number", [](Session& s) { s.settings().bloom.intensity = 0.3f; }},
         {"text", [](Session& s) { s.settings().annotation.title = "depth"; }},
@@ -70,10 +91,14 @@ TEST(PictureVersion, RisesWithWhateverIsDrawn) {
              image.pixels<float>()[0] = 3;
              s.scene().set_environment(Environment(image));
          }},
+        {"pass", [](Session& s) { s.remove_pass("tint"); }},
+        {"uniform", [&](Session&) { tint->shader.set("u_part", 0.5f); }},
+        {"texture", [&](Session& s) { s.settings().material.base_color_texture = texture.name(); }},
         {"background", [](Session& s) { s.set_background(Image(4, 4, 3, PixelType::u8)); }},
     };
     for (const auto& [name, change] : changes) {
         Session session = drawn_session();
+        session.add_pass("tint", Stage::overlay, tint);
         const uint64_t before = session.picture_version();
         EXPECT_EQ(session.picture_version(), before) << name;
         change(session);

@@ -70,6 +70,14 @@ def test_the_formats_of_data_sets_are_all_completed(bash):
     assert set(bash("easypbr", "dataset", "--writers", "")) == set(WRITERS)
 
 
+def test_the_layers_that_render_takes_are_all_completed(bash, easypbr, sphere):
+    names = set(bash("easypbr", "render", "--layers", ""))
+    assert {"object_id", "ambient_occlusion", "instances", "distance"} <= names
+    easypbr("render", sphere, "-o", "out.png", "--size", "16x16", "--layers", ",".join(sorted(names)))
+    error = easypbr("render", sphere, "-o", "out.png", "--layers", "none", code=2).stderr
+    assert names == set(error.split("expected ")[1].split(" (see")[0].split(", "))
+
+
 def test_bash_answers_at_once(bash, tmp_path):
     """50 ms, without bash's own start; nothing of easypbr is started."""
     script = tmp_path / "easypbr"

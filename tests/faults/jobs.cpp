@@ -75,7 +75,8 @@ Memory memory_of(const fs::path& extension, const std::string& kind) {
 std::vector<Job> make_reading_jobs() {
     std::vector<Job> jobs;
     for (const char* kind :
-         {"ply", "obj", "stl", "off", "gltf", "pcd", "xyz", "pts", "npy", "npz", "las", "bin", "splat",
+         {"ply",   "obj",      "stl",         "off",        "gltf",       "pcd",       "xyz",
+          "pts",   "npy",      "npz",         "las",        "bin",        "splat",     "spz",
           "image", "settings", "camera_path", "label_text", "label_json", "label_yaml"}) {
         std::vector<fs::path> files;
         for (const auto& entry : fs::directory_iterator(fs::path(EASYPBR_TESTS) / "fuzz/seeds" / kind))
@@ -105,6 +106,11 @@ std::vector<Job> make_writing_jobs() {
                             return hash_of(io::load_mesh(path));
                         },
                         memory_of(fs::path("a.").concat(extension).extension(), "")});
+    const Mesh splats = io::load_mesh(fs::path(EASYPBR_TESTS) / "fuzz/seeds/splat/five.splat");
+    jobs.push_back({"writing spz", [splats](const fs::path& folder) {
+                        io::save_mesh(splats, folder / "a.spz");
+                        return hash_of(io::load_mesh(folder / "a.spz"));
+                    }});
     for (const char* extension : {"png", "jpg", "hdr", "exr"})
         jobs.push_back({fmt::format("writing {}", extension),
                         [extension](const fs::path& folder) {

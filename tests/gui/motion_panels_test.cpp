@@ -189,6 +189,10 @@ TEST_F(MotionPanels, WhatWasRecordedBeforeStays) {
     }
     EXPECT_TRUE(fs::exists(folder_ / "frame_00_2.png"));
     EXPECT_EQ(form.picture, (folder_ / "picture.png").string());
+    for (const char* name : {"", "/", "//"}) {
+        EXPECT_EQ(app::free_picture(name), name);
+        EXPECT_EQ(app::free_recording(name), name);
+    }
     EXPECT_EQ(app::free_recording(folder_ / "film.mp4"), folder_ / "film.mp4");
     io::save_image(Image(1, 1, 3, PixelType::u8), folder_ / "film.png");
     fs::rename(folder_ / "film.png", folder_ / "film.mp4");

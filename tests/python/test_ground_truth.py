@@ -182,6 +182,8 @@ def test_parts_and_bad_input(view):
         view.annotations(instances_by="objects")
     with pytest.raises(ArgumentError, match="numpy"):
         view.render_layers(["depth"], as_="jax")
+    with pytest.raises(ArgumentError, match="as_: expected 'numpy' or 'torch', got None"):
+        view.render_layers(["depth"], as_=None)
     for bad in (np.zeros((3, 3)), np.full((3, 3), np.nan)):
         with pytest.raises(ArgumentError, match="K"):
             Camera.from_opencv(bad, T_WORLD_CAM, SIZE)

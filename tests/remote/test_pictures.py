@@ -256,6 +256,15 @@ def test_camera_text_is_taken_and_told(connect):
     client.until_told("notice", lambda notice: notice["error"])
 
 
+def test_the_camera_is_told_while_nothing_can_be_drawn(view, connect):
+    client = connect()
+    client.until_exact()
+    view.settings["background.mode"] = "image"  # without one
+    client.until_told("notice", lambda notice: notice["error"] and "background.image" in notice["text"])
+    client.send("camera", text="camera.pose=1,0,0,0,0,1,0,0,0,0,1,9,0,0,0,1")
+    client.until_known("camera", lambda message: "0,0,1,9" in message["text"])
+
+
 def test_nothing_is_sent_while_nothing_changes(connect):
     client = connect()
     client.until_exact()

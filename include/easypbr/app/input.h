@@ -21,6 +21,7 @@ inline constexpr int space = 32, escape = 256, enter = 257, tab = 258, backspace
 }
 
 struct InputEvent {
+    /// Those up to scroll have a position. bind_gui.cpp and panels.py name them in this order.
     enum class Kind {
         move,     ///< the pointer is at `position`
         press,    ///< of `button`

@@ -8,6 +8,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/pipeline/layers.h"
 #include "easypbr/scene/colormap.h"
 #include "easypbr/scene/label_colors.h"
 
@@ -60,6 +61,16 @@ Image depth_picture(const Image& layer) {
 }
 
 }  // namespace
+
+bool is_layer(const std::string& channel) {
+    return channel != "picture" && channel != "slices";
+}
+
+std::vector<std::string> channel_names() {
+    std::vector<std::string> names = {"picture", "slices"};
+    names.insert(names.end(), render::layer_names().begin(), render::layer_names().end());
+    return names;
+}
 
 Image layer_picture(const std::string& name, const Image& layer) {
     if (name == "albedo")

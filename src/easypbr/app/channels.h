@@ -8,6 +8,11 @@
 
 namespace easypbr::app {
 
+/// What a live view can show: "picture", "slices", and all layers.
+std::vector<std::string> channel_names();
+/// Whether it is a layer.
+bool is_layer(const std::string& channel);
+
 /// A layer (see render::Layer) as an RGBA u8 picture: colours encoded as sRGB, normals as n / 2 + 1/2, depth
 /// by colormap over what occurs (near is bright), ids and elements in colours of their own, all of these grey
 /// where there is nothing; other numbers as grey values from 0 to 1.

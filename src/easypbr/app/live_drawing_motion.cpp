@@ -76,9 +76,11 @@ void LiveDrawing::begin_recording(LiveWishes::Recording wish, const LiveScreens&
     form.panels &= bool(screens.shown);
     if (wish == Wish::none || wish == Wish::stop) return;
     // What a person made before stays.
-    form.picture = free_picture(form.picture).string();
+    if (wish == Wish::picture) {
+        form.picture = free_picture(form.picture).string();
+        return tell("Wrote " + recording_.picture(form, screens.finished), false);
+    }
     form.video = free_recording(form.video).string();
-    if (wish == Wish::picture) tell("Wrote " + recording_.picture(form, screens.finished), false);
     if (wish == Wish::video) recording_.start(form, size_);
     if (wish == Wish::path && path_.editor.path()) {
         path_.editor.pause();

@@ -29,10 +29,6 @@ void fit_texture(gl::Texture& texture, Vec2i size) {
     texture.sampling(gl::Filtering::linear);
 }
 
-bool is_layer(const std::string& channel) {
-    return channel != "picture" && channel != "slices";
-}
-
 }  // namespace
 
 bool LivePicture::is_stale(const LiveShot& shot, uint64_t version) const {

@@ -156,7 +156,8 @@ fs::path frame_path(const fs::path& path, int index) {
 }
 
 fs::path free_picture(const fs::path& path) {
-    return free_path(path, is_there);
+    // What cannot be written to is reported when the picture is written.
+    return path.has_relative_path() ? free_path(path, is_there) : path;
 }
 
 fs::path free_recording(const fs::path& path) {

@@ -8,7 +8,7 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/parse_errors.h"
 #include "easypbr/cli/render_options.h"
-#include "easypbr/dataset/ground_truth.h"
+#include "easypbr/cli/truth_layers.h"
 #include "easypbr/io/settings/presets.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/label_map.h"
@@ -43,7 +43,7 @@ std::vector<std::string> choices_of(const std::string& name, const CLI::Option& 
     if (name == "set") return settings_below("");
     if (name == "style") return settings_below("style.");
     if (name == "texture") return textures();
-    if (name == "layers") return dataset::truth_layer_names();
+    if (name == "layers") return writable_layers();
     if (name == "preset") return io::preset_names();
     if (name == "writers") return dataset_writers();
     if (name == "label-map") return built_in_label_map_names();

@@ -92,15 +92,16 @@ Image image_of(const dataset::LayerArray& layer) {
     return image;
 }
 
-/// The picture itself and flow are not written here.
-std::vector<std::string> known_layers() {
-    std::vector<std::string> known = {instances};
-    for (const std::string& name : dataset::truth_layer_names())
-        if (name != "color" && name != "hdr" && !name.ends_with("ward")) known.push_back(name);
-    return known;
-}
-
 }  // namespace
+
+std::vector<std::string> writable_layers() {
+    std::vector<std::string> names = {instances};
+    for (const std::string& name : dataset::truth_layer_names())
+        if (name != "color" && name != "hdr" && !name.ends_with("ward")) names.push_back(name);
+    for (const std::string& name : render::layer_names())
+        if (!contains(names, name)) names.push_back(name);
+    return names;
+}
 
 void check_layer(const std::string& name) {
     if (name.ends_with("ward") && contains(dataset::truth_layer_names(), name))
@@ -108,11 +109,8 @@ void check_layer(const std::string& name) {
             fmt::format("--layers: {} needs another frame: use render_layers() of the Python package", name));
     if (const std::string now = render::layer_formerly(name); !now.empty())
         throw UsageError(fmt::format("--layers: there is no layer '{}': it is called '{}'", name, now));
-    std::vector<std::string> known = known_layers();
-    if (contains(known, name)) return;
-    for (const std::string& own : render::layer_names())
-        if (!contains(known, own)) known.push_back(own);
-    if (!contains(render::layer_names(), name))
+    const std::vector<std::string> known = writable_layers();
+    if (!contains(known, name))
         throw UsageError(fmt::format("--layers: there is no layer '{}'{}: expected {}", name,
                                      did_you_mean(name, known), fmt::join(known, ", ")));
 }

@@ -9,6 +9,10 @@
 
 namespace easypbr::cli {
 
+/// What `easypbr render --layers` takes: the ground truth but for the picture itself and flow, which needs
+/// another frame, the picture's own layers, and "instances".
+std::vector<std::string> writable_layers();
+
 /// Throws UsageError for what is neither a layer of the picture, one of the ground truth, nor "instances",
 /// and for flow, which needs another frame.
 void check_layer(const std::string& name);

@@ -102,7 +102,7 @@ GroundTruth ground_truth(app::Session& session, const std::vector<std::string>& 
         if (truth.layers.contains(name)) continue;
         std::optional<LayerArray> layer = surface_layer(name, now, table);
         if (!layer) layer = drawn_layer(name, drawn, now);
-        truth.layers[name] = std::move(*layer);
+        truth.layers[name] = std::move(layer).value();
     }
     std::erase_if(truth.layers, [&](const auto& item) { return !wants(layers, item.first); });
     if (options.instances) truth.instances = annotate(drawn, now, table, options.amodal);

@@ -7,6 +7,9 @@ namespace {
 
 #include "easypbr_dfg.inc"
 
+constexpr size_t texels = size_t(dfg_size) * dfg_size;
+static_assert(std::size(sheen_albedo) == texels && std::size(dfg_ue4) == 2 * texels);
+
 native::View view_of(std::span<const uint16_t> table) {
     return {.data = std::as_bytes(table).data(),
             .width = dfg_size,

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "easypbr/app/camera_text.h"
+#include "easypbr/app/channels.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
@@ -94,8 +95,7 @@ void camera_panel(GuiState& state) {
 }
 
 void channels_panel(GuiState& state) {
-    std::vector<std::string> names = {"picture", "slices"};
-    for (const std::string& layer : render::layer_names()) names.push_back(layer);
+    const std::vector<std::string> names = app::channel_names();
     const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
     for (size_t i = 0; i < names.size(); ++i) {
         if (i % 3 != 0) ImGui::SameLine();

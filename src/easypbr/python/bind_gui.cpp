@@ -58,6 +58,7 @@ int on_event(SharedViewer& self, nb::object function) {
 std::string kind_name(const InputEvent& event) {
     constexpr const char* names[] = {"move", "press", "release", "scroll",     "key_down", "key_up",
                                      "text", "drop",  "resize",  "focus_lost", "leave"};
+    static_assert(std::size(names) == size_t(InputEvent::Kind::leave) + 1);
     return names[size_t(event.kind)];
 }
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "easypbr/app/channels.h"
 #include "easypbr/app/edits.h"
 #include "easypbr/core/error.h"
-#include "easypbr/render/pipeline/layers.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
@@ -182,12 +182,10 @@ std::string welcome_text(const std::string& session, bool watches_only) {
     json rows = json::array();
     for (const Field& field : fields())
         if (is_open(field)) rows.push_back(description_of(field));
-    json channels = {"picture", "slices"};
-    for (const std::string& name : render::layer_names()) channels.push_back(name);
     return written({{"kind", "welcome"},
                     {"session", session},
                     {"watches", watches_only},
-                    {"channels", channels},
+                    {"channels", app::channel_names()},
                     {"fields", rows}});
 }
 

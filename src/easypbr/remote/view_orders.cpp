@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "easypbr/app/camera_text.h"
+#include "easypbr/app/channels.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/interrupt.h"
 #include "easypbr/remote/view_state.h"
@@ -60,19 +61,26 @@ void View::Own::keep_drawable(const Settings& before) {
     }
 }
 
-std::string View::Own::camera_message() try {
-    if (session.scene().names().empty()) {
-        camera = {};
-        return remote::camera_message({});
+std::string View::Own::camera_message() {
+    if (session.scene().names().empty()) return camera = {}, remote::camera_message({});
+    try {
+        // The camera is a part of the picture; what of it is written depends on the settings too.
+        const uint64_t version = session.picture_version(size);
+        const bool is_known = camera.version == version && are_equal(camera.settings, session.settings());
+        if (!is_known) camera = {version, session.settings(), written_camera()};
+        return camera.message;
+    } catch (const Error&) {
+        camera = {};  // Nothing can be drawn; the settings may give a camera all the same.
     }
-    // The camera is a part of the picture; what of it is written depends on the settings too.
-    const uint64_t version = session.picture_version(size);
-    const bool is_known = camera.version == version && are_equal(camera.settings, session.settings());
-    if (!is_known)
-        camera = {version, session.settings(), remote::camera_message(app::camera_text(session, size))};
-    return camera.message;
-} catch (const Error&) {
-    return told_camera;
+    try {
+        return written_camera();
+    } catch (const Error&) {
+        return told_camera;
+    }
+}
+
+std::string View::Own::written_camera() {
+    return remote::camera_message(app::camera_text(session, size));
 }
 
 std::string View::Own::scene_message() {
@@ -160,7 +168,7 @@ void View::obey(ClientId from, const PickAt& message) {
 }
 
 void View::obey(ClientId, const SetChannel& message) {
-    if (message.name != "picture" && message.name != "slices") render::layer_named(message.name);
+    if (app::is_layer(message.name)) render::layer_named(message.name);
     own_->live.channel = message.name;
 }
 

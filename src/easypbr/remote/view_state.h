@@ -22,6 +22,7 @@ struct View::Own {
 
     /// The last one that there was while the settings give no camera.
     std::string camera_message();
+    std::string written_camera();
     std::string scene_message();
     std::string animation_message() const;
     std::string statistics_message(const ViewClients& clients);

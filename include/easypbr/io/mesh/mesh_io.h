@@ -26,7 +26,8 @@ struct LoadedScene {
 };
 
 struct LoadOptions {
-    /// STL: welded corners whose faces meet at a larger angle keep separate normals; none: 30.
+    /// STL, and OBJ without normals: edges between faces at a larger angle, degrees, are sharp; none: 30 of
+    /// STL, 60 of OBJ.
     std::optional<float> crease_angle_deg = {};
     double memory_gb = 0;      ///< most that the arrays and images of the file may take; 0: three quarters of
                                ///< what the machine has left
@@ -36,7 +37,7 @@ struct LoadOptions {
 };
 
 /// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,
-/// NPZ, LAS and the BIN of KITTI and nuScenes, and by way of assimp, in a process of its own, what that
+/// NPZ, LAS, LAZ, the splats SPLAT and SPZ, and the BIN of KITTI and nuScenes, and by way of assimp, in a process of its own, what that
 /// library reads. Points of clouds whose positions are not finite are left out with a warning that counts
 /// them. What is missing or unknown beside the geometry (a texture file, an element) is logged as a warning
 /// and left out. Throws FileError when the file cannot be read; FormatError, with line or byte, when it is
@@ -54,7 +55,7 @@ LoadedScene load_scene(std::span<const std::byte> bytes, const std::filesystem::
 /// The mesh of load_scene().
 Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// Writes PLY (binary), OBJ (+ MTL), GLB, NPZ, or the points as PCD (binary), XYZ (also txt, asc), CSV or
+/// Writes PLY (binary), OBJ (+ MTL), GLB, NPZ, splats as SPZ, or the points as PCD (binary), XYZ (also txt, asc), CSV or
 /// NPY, by the extension; children are merged in world space for all but GLB. Formats without materials get
 /// their colours and opacities as colours of vertices. A warning names what the format has no place for.
 /// Throws FileError, FormatError for an unknown extension, or ArgumentError for a mesh without vertices.

@@ -1,6 +1,6 @@
 // The effects and their settings. A line here registers an effect's settings: they become a member of
-// Settings, and their rows and inferred values, which stand in the effect's own folder, part of the table and
-// of resolve().
+// Settings, and their rows and inferred values, which stand in the effect's own folder (those of rays and
+// paths in render/raytrace), part of the table and of resolve().
 #pragma once
 
 #include "easypbr/scene/effects/ambient_occlusion.h"

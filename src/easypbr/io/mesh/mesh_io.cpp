@@ -148,7 +148,9 @@ std::string encode(const MeshData& mesh, const fs::path& path, const std::string
     if (extension == "spz") return encode_spz(mesh);
     if (extension == "pcd") return encode_pcd(mesh);
     if (extension == "npy") return encode_npy(mesh);
-    return encode_xyz(mesh, extension == "csv" ? ',' : ' ');
+    if (extension == "csv") return encode_xyz(mesh, ',');
+    if (extension == "xyz" || extension == "txt" || extension == "asc") return encode_xyz(mesh, ' ');
+    throw std::logic_error("no writer of ." + extension);
 }
 
 /// Whether vertices were split from one, as at seams of texture coordinates.

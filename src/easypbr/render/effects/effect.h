@@ -35,7 +35,8 @@ struct EffectInputs {
 };
 
 /// One effect. Its settings, their rows in the table and what is inferred for them stand beside it; it is
-/// registered in effects.cpp and, with its settings, in scene/settings.h.
+/// registered in effects.cpp, its settings in scene/effects/effects.h, its native shaders in
+/// cmake/native.cmake.
 class Effect {
   public:
     virtual ~Effect() = default;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
+#include <stdexcept>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/octahedral.h"
@@ -11,11 +13,32 @@
 #include "easypbr/core/suggest.h"
 
 namespace easypbr::render {
+namespace {
+
+/// Where a parameter of the material stands in the G-buffer's.
+size_t channel_of(Layer layer) {
+    switch (layer) {
+        case Layer::metallic:
+            return 0;
+        case Layer::roughness:
+            return 1;
+        case Layer::occlusion:
+            return 2;
+        default:
+            throw std::logic_error("layer " + layer_names()[size_t(layer)] + " is not read");
+    }
+}
+
+}  // namespace
+
 const std::vector<std::string>& layer_names() {
-    static const std::vector<std::string> names = {
-        "albedo",    "normal_world",      "depth",     "roughness", "metallic",
-        "occlusion", "ambient_occlusion", "object_id", "element_id"};
-    return names;
+    // In the order of Layer.
+    static const auto names =
+        std::to_array<std::string>({"albedo", "normal_world", "depth", "roughness", "metallic", "occlusion",
+                                    "ambient_occlusion", "object_id", "element_id"});
+    static_assert(std::tuple_size_v<decltype(names)> == size_t(Layer::element_id) + 1);
+    static const std::vector<std::string> list(names.begin(), names.end());
+    return list;
 }
 
 std::string layer_formerly(const std::string& name) {
@@ -85,7 +108,7 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
         const auto texels = targets.ambient_occlusion.read<uint16_t>(transfers);
         for_each_covered([&](size_t i) { to[i] = float(texels[i]) / 65535.0f; });
     } else {
-        const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
+        const size_t channel = channel_of(layer);
         const auto texels = targets.material.read<uint8_t>(transfers);
         for_each_covered([&](size_t i) { to[i] = float(texels[4 * i + channel]) / 255.0f; });
     }

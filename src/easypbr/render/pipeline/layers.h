@@ -28,6 +28,7 @@ enum class Layer {
 
 /// "albedo", "normal_world", ... Throws NameError with the nearest name, or with what a former name became.
 Layer layer_named(const std::string& name);
+/// In the order of Layer.
 const std::vector<std::string>& layer_names();
 /// What a layer is called now that was "normal", "id" or "element"; empty for other names.
 std::string layer_formerly(const std::string& name);
