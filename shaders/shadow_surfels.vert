@@ -7,6 +7,7 @@ layout(location = 2) in vec4 a_color;
 layout(location = 3) in vec4 a_axes;  // tangent, its length being the first semi-axis; length of the second
 
 uniform mat4 u_clip_from_mesh;
+uniform mat3 u_world_from_mesh;
 uniform vec4 u_light;   // in the mesh's frame; w 0: direction towards it
 uniform vec2 u_surfel;  // factor on the size, radius without a tangent
 uniform float u_opacity;
@@ -30,7 +31,8 @@ void main() {
     v_place = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, (gl_VertexID & 2) == 0 ? -1.0 : 1.0);
     vec3 t = direction * (first * u_surfel.x), b = cross(n, direction) * (second * u_surfel.x);
     // Behind the surface that bends within a surfel: it must not shadow its neighbours.
-    vec3 p = a_position - to_light * (0.25 * max(length(t), length(b)));
+    float longer = max(length(u_world_from_mesh * t), length(u_world_from_mesh * b));
+    vec3 p = a_position - to_light * (0.25 * longer / length(u_world_from_mesh * to_light));
     gl_Position = u_clip_from_mesh * vec4(p + v_place.x * t + v_place.y * b, 1.0);
     v_alpha = u_opacity;
     if (has_vertex_colors) v_alpha *= a_color.a;

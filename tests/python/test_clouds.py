@@ -140,3 +140,15 @@ def test_a_small_cloud_in_a_large_scene_is_seen():
     seen = easypbr.Viewer((640, 480), scene=scene).layers(["object_id"])["object_id"]
     # Discs of 1.5 % of 0.03 would be a tenth of a pixel; three of 5 pixels, 4 apart, are 40 to 60 pixels.
     assert (seen == 2).sum() > 20
+
+
+def test_surfels_of_a_flattened_ball_do_not_shadow_themselves():
+    ball = easypbr.shapes.sphere(1, 48).sample_surface(4000).estimate_surfels()
+    ball.T_parent_mesh = np.diag([4, 4, 0.4, 1.0])
+
+    def light(shadows):
+        settings = {"ssao.enabled": False, "ground.mode": "none", "background.mode": "transparent", "shadows.enabled": shadows}
+        return easypbr.render(ball, size=(160, 120), mode="raster", settings=settings)[..., 1].sum(dtype=float)
+
+    # A convex body has no shadow on itself; 0.3 %: neighbours at the rim of the light.
+    assert light(True) > 0.995 * light(False)

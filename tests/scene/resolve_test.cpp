@@ -335,6 +335,28 @@ TEST(Resolve, NearPlaneLiesBeforeWhatIsNearHoweverFarTheRestIs) {
     }
 }
 
+// The Earth below a camera in orbit, and a satellite of 2 m at 10 m: 1e-9 of the 6.8e6 m to the middle.
+TEST(Resolve, NearPlaneLiesBeforeWhatIsNearWithinLargeContent) {
+    Scene scene;
+    scene.show(points({{-6.4e6f, -13.2e6f, -6.4e6f}, {6.4e6f, -4e5f, 6.4e6f}}), "planet");
+    scene.show(points({{-1, -1, -11}, {1, 1, -9}}), "satellite");
+    Settings settings;
+    settings.camera.pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    EXPECT_LT(resolve(scene.snapshot(), settings, size).camera.near, 0.1);
+}
+
+TEST(Resolve, VoxelsAreOccludedAsSurfacesAre) {
+    Scene scene;
+    Mesh mesh = points({{-0.5f, 0, 0}, {0.5f, 0, 0.5f}});
+    scene.show(mesh, "cloud");
+    const auto is_occluded = [&] { return resolve(scene.snapshot(), {}, size).settings.ssao.enabled; };
+    EXPECT_FALSE(is_occluded());
+    Style style;
+    style.mode = DrawMode::voxels;
+    mesh.set_style(style);
+    EXPECT_TRUE(is_occluded());
+}
+
 TEST(Resolve, RefusesContradictions) {
     const SceneSnapshot scene = scene_of(blob());
     const auto refuses = [&](const auto& change) {

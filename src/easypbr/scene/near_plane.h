@@ -5,11 +5,10 @@
 
 namespace easypbr::detail {
 
-/// Distance of a near plane before content that begins at a depth, with a target at `distance`. Depths are
-/// reversed floats, so that a small one costs nothing. Only where the content begins behind the camera does
-/// it cut triangles, which GPUs do in single precision of the content's extent.
+/// Distance of a near plane before content that begins at a depth, which is negative behind the camera, with
+/// a target at `distance`. Depths are reversed floats, so that a small one costs nothing.
 constexpr double near_plane(double nearest, double distance) {
-    return nearest > 0 ? std::max(0.1 * nearest, 1e-9 * distance) : 1e-5 * distance;
+    return std::max(0.1 * nearest, 1e-9 * distance);
 }
 
 }  // namespace easypbr::detail

@@ -11,7 +11,7 @@ enum class OcclusionResolution { adaptive, half, full };
 /// Screen-space ambient occlusion of image-based lighting.
 template <template <class> class MaybeAuto>
 struct BasicSsaoSettings {
-    MaybeAuto<bool> enabled{};  ///< automatic: on if the scene has faces or normals
+    MaybeAuto<bool> enabled{};  ///< automatic: on if the scene has faces, normals or voxels
     OcclusionMethod method = OcclusionMethod::horizon;
     OcclusionResolution resolution = OcclusionResolution::adaptive;  ///< adaptive: full from 48 samples on
     MaybeAuto<float> radius{};  ///< of occluders at most, world units; automatic: 5 % of the diagonal

@@ -94,7 +94,6 @@ Vec2 uv_at(const DrawItem& item, int element, float u, float v) {
 
 float coverage_at(const DrawItem& item, int element, float u, float v) {
     const Material& m = item.material;
-    if (item.kind != SurfaceKind::lit) return 1;
     float opacity = m.opacity;
     if (item.alpha != AlphaMode::opaque) {
         opacity *= vertex_color(item, element, u, v).w();

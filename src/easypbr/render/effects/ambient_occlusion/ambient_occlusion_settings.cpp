@@ -1,6 +1,7 @@
 // The rows of the table for screen-space ambient occlusion, and what is inferred.
 #include <algorithm>
 
+#include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/field_builder.h"
 
@@ -23,9 +24,11 @@ namespace {
 /// The paper's radius.
 constexpr double occlusion_radius = 0.05;
 
-bool has_surfaces(const SceneSnapshot& scene) {
-    return std::ranges::any_of(scene.objects, [](const SceneSnapshot::Object& object) {
-        return !object.mesh->F.empty() || !object.mesh->N.empty();
+bool has_surfaces(const Content& content) {
+    return std::ranges::any_of(content.scene().objects, [&](const SceneSnapshot::Object& object) {
+        const MeshData& mesh = *object.mesh;
+        return !mesh.F.empty() || !mesh.N.empty() ||
+               (!mesh.V.empty() && resolve_style(mesh, content.overrides()).mode == DrawMode::voxels);
     });
 }
 
@@ -34,7 +37,7 @@ bool has_surfaces(const SceneSnapshot& scene) {
 void add_ssao(Table& table) {
     table.push_back(make("ssao.enabled", EASYPBR_AT(ssao.enabled),
                          "Enables screen-space ambient occlusion of image-based lighting; automatic: on if "
-                         "the scene has faces or normals."));
+                         "the scene has faces, normals or voxels."));
     table.push_back(make("ssao.method", EASYPBR_AT(ssao.method),
                          "Ambient occlusion algorithm: horizon-based (ground-truth ambient occlusion), or "
                          "point samples in the normal-oriented hemisphere."));
@@ -62,7 +65,7 @@ void add_ssao(Table& table) {
 }
 
 void infer(SsaoSettings& ssao, const EffectContext& context) {
-    if (!ssao.enabled.value()) fill(ssao.enabled, has_surfaces(context.content.scene()));
+    if (!ssao.enabled.value()) fill(ssao.enabled, has_surfaces(context.content));
     if (!ssao.radius.value())
         fill(ssao.radius, float(std::max(occlusion_radius * 2 * context.content.radius(), 1e-30)));
 }

@@ -16,6 +16,10 @@ constexpr size_t surfel_grain = 1 << 12;
 /// within it, which must not shadow its neighbours.
 constexpr float semi_axes_pushed = 0.25f;
 
+Mat3 linear_of(const DrawItem& item) {
+    return item.object->T_world_mesh.linear().cast<float>();
+}
+
 /// Of all surfels, in the mesh's units.
 double longest_axis(const MeshData& mesh) {
     double longest = 0;
@@ -42,12 +46,13 @@ double SurfelShadows::reach(const DrawItem& item) {
 
 auto SurfelShadows::ellipses_of(const ShadowView& view, const DrawItem& item, int resolution) {
     const Mat4d clip_from_mesh = view.clip_from_world() * item.object->T_world_mesh.matrix();
-    return [&mesh = item.mesh(), clip_from_mesh, light = light_in_mesh(view, item), resolution,
+    return [&mesh = item.mesh(), clip_from_mesh, linear = linear_of(item), light = light_in_mesh(view, item), resolution,
             radius = float(radius(item)), scale = item.style.surfel_scale](size_t i) {
         const Vec3 at = mesh.V.row(Eigen::Index(i));
         const Vec3 to_light = (light.head<3>() - light.w() * at).normalized();
         const auto [t, b] = surfel_axes(mesh, Eigen::Index(i), to_light, radius, scale);
-        const Vec3 p = at - to_light * (semi_axes_pushed * std::max(t.norm(), b.norm()));
+        const float longer = std::max((linear * t).norm(), (linear * b).norm());
+        const Vec3 p = at - to_light * (semi_axes_pushed * longer / (linear * to_light).norm());
         const auto clip = [&](const Vec3& v, double one) {
             return Eigen::Vector4d(clip_from_mesh * Eigen::Vector4d(v.x(), v.y(), v.z(), one));
         };
@@ -86,6 +91,7 @@ void SurfelShadows::draw(const ShadowLayer& layer, const Casters& casters) {
         const gl::Program& program = programs_.get(caster_defines(*item));
         program.use();
         program.set("u_clip_from_mesh", layer.clip_from_mesh(*item));
+        program.set("u_world_from_mesh", linear_of(*item));
         program.set("u_light", light_in_mesh(layer.view, *item));
         program.set("u_surfel", Vec2(item->style.surfel_scale, float(radius(*item))));
         set_caster_alpha(program, *item);
