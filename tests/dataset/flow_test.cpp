@@ -126,6 +126,43 @@ TEST(Flow, GrazingSurfacesAreNotOccluded) {
     EXPECT_LE(counts.occluded, 3 * 38);
 }
 
+// Of three children of one name the first leaves: the others are where they were.
+TEST(Flow, OfSiblingsOfOneNameIsTheirOwn) {
+    const Vec2i size(160, 120);
+    for (const bool hides : {false, true}) {
+        Scene scene;
+        Mesh parent, first = moved(make_sphere(0.3f, 32), {-0.8, 0, -4});
+        parent.add_child(first);
+        for (const double x : {0.0, 0.8}) parent.add_child(moved(make_sphere(0.3f, 32), {x, 0, -4}));
+        scene.show(parent, "row");
+        app::Session session = plain_session(scene);
+        session.set_camera(opencv_camera(off_centre_K(), size));
+        const app::Moment before = session.moment(size);
+        if (hides) {
+            Style hidden;
+            hidden.visible = false;
+            first.set_style(hidden);
+        } else {
+            parent.remove_child(first);
+        }
+        TruthOptions options;
+        options.size = size;
+        options.previous = &before;
+        const GroundTruth now =
+            ground_truth(session, {"flow_backward", "occlusion_backward", "depth"}, options);
+        int seen = 0;
+        for (size_t i = 0; i < size_t(size.prod()); ++i) {
+            if (!(now.layers.at("depth").floats()[i] > 0)) continue;
+            ++seen;
+            // Single precision of the position: a few times 1e-7 of 160 pixels.
+            for (size_t k = 0; k < 2; ++k)
+                EXPECT_NEAR(now.layers.at("flow_backward").floats()[2 * i + k], 0, 2e-3);
+            EXPECT_EQ(now.layers.at("occlusion_backward").bytes()[i], 0);
+        }
+        EXPECT_GT(seen, 500);
+    }
+}
+
 // Nothing tells which points of a mesh are those of another one of its name.
 TEST(Flow, OfOtherArraysIsNone) {
     const Vec2i size(160, 120);

@@ -157,6 +157,32 @@ TEST(MotionBlur, SiblingsOfOneNameAreTwoObjects) {
     expect_profile(moving.draw(64), 0, 20);
 }
 
+// The first one leaves; the other one stays where it is, and is sharp.
+TEST(MotionBlur, IsNotThatOfASiblingThatLeft) {
+    Moving moving;
+    Mesh other = moving.mesh.clone(), parent;
+    other.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 40, 0)));
+    parent.add_child(other);
+    parent.add_child(moving.mesh);
+    moving.scene.show(parent, "square");
+    moving.move(20);
+    moving.draw(1);
+    parent.remove_child(other);
+    expect_profile(moving.draw(64), 20, 20);
+}
+
+// Of meshes that are made anew for each picture the name tells which is which.
+TEST(MotionBlur, OfAReplacedMeshIsThatOfItsName) {
+    Moving moving;
+    moving.session.settings().motion_blur.shutter = 1;
+    moving.move(-20);
+    moving.draw(1);
+    moving.mesh = moving.mesh.clone();
+    moving.scene.show(moving.mesh, "square");
+    moving.move(20);
+    expect_profile(moving.draw(64), -20, 20);
+}
+
 TEST(MotionBlur, LeavesLayersAlone) {
     Moving moving;
     moving.move(-20);

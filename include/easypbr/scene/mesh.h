@@ -1,6 +1,7 @@
 // Mesh: a handle to matrices (vertices, faces, attributes), materials, a style, a pose and children.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -161,8 +162,9 @@ class Mesh {
 
     /// The same object (not: equal data).
     bool operator==(const Mesh& other) const { return shared_ == other.shared_; }
-    /// Equal for handles to the same object, and different from those of others that live.
-    const void* identity() const { return shared_.get(); }
+    /// Equal for handles to the same object, and different from those of all others, also of those that are
+    /// gone. Never 0.
+    uint64_t identity() const;
 
   private:
     struct Shared;

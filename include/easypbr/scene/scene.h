@@ -21,7 +21,7 @@ struct SceneSnapshot {
         /// The name under which its hierarchy is shown. `name` does not tell: a child "b" of "car" and what
         /// is shown as "car/b" are both "car/b".
         std::string root = {};
-        const void* node = nullptr;  ///< Mesh::identity()
+        uint64_t node = 0;  ///< Mesh::identity()
         /// How far what is drawn reaches beyond the vertices by the object's own style: half a voxel along
         /// each axis of V, and the radius of points whose size is in world units.
         double half_voxel = 0, point_radius = 0;

@@ -46,7 +46,7 @@ class MotionMemory {
 
   private:
     struct Jumps {
-        std::map<const void*, std::pair<Mesh, Eigen::Affine3d>> poses;  ///< by the meshes' identity
+        std::map<uint64_t, std::pair<Mesh, Eigen::Affine3d>> poses;  ///< by the meshes' identity
         std::optional<Camera> camera;
 
         bool empty() const { return poses.empty() && !camera; }

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <vector>
 
 #include "easypbr/core/parallel.h"
@@ -38,19 +37,16 @@ bool same_elements(const MeshData& a, const MeshData& b) {
 
 std::vector<Motion> motions(const Surfaces& now, const Surfaces& other) {
     std::vector<Motion> all;
-    std::map<ObjectKey, const SceneSnapshot::Object*> there;
-    const std::vector<ObjectKey> other_keys = object_keys(other.scene), keys = object_keys(now.scene);
-    for (size_t i = 0; i < other_keys.size(); ++i) there[other_keys[i]] = &other.scene.objects[i];
-    for (size_t i = 0; i < keys.size(); ++i) {
+    const auto there = partners(object_keys(now.scene), object_keys(other.scene));
+    for (size_t i = 0; i < there.size(); ++i) {
         const SceneSnapshot::Object& object = now.scene.objects[i];
         Motion motion;
         motion.T_cv_mesh_here = cv_from_mesh(now.camera, object);
         motion.T_mesh_cv = inverse_pose(motion.T_cv_mesh_here);
-        if (const auto same = there.find(keys[i]);
-            same != there.end() && same_elements(*same->second->mesh, *object.mesh)) {
-            const SceneSnapshot::Object* const found = same->second;
+        const SceneSnapshot::Object* const found = there[i] ? &other.scene.objects[*there[i]] : nullptr;
+        if (found && same_elements(*found->mesh, *object.mesh)) {
             motion.there = found;
-            motion.there_number = uint32_t(found - other.scene.objects.data()) + 1;
+            motion.there_number = uint32_t(*there[i]) + 1;
             motion.T_cv_mesh = cv_from_mesh(other.camera, *found);
             motion.T_mesh_cv_there = inverse_pose(motion.T_cv_mesh);
             motion.same_faces = found->mesh->V.revision() != object.mesh->V.revision();

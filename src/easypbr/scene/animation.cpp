@@ -310,7 +310,7 @@ MovedMeshes Animations::jumps(size_t index, double from_s, double to_s, bool loo
     if (std::abs(was.time_s - begin.time_s) <= same_time * duration_s(index)) was.time_s = begin.time_s;
     const Animation& animation = rig_.animations[index];
     const std::vector<Pose> from = pose(animation, begin), before = pose(animation, was);
-    std::vector<const void*> jumped;
+    std::vector<uint64_t> jumped;
     for (size_t i = 0; i < rig_.nodes.size(); ++i)
         if (rig_.nodes[i].mesh && from[i].matrix().matrix() != before[i].matrix().matrix())
             jumped.push_back(rig_.nodes[i].mesh->identity());

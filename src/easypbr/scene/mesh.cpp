@@ -52,6 +52,10 @@ Mesh::Mesh(Array3f V, Array3i F)
           return data;
       }()) {}
 
+uint64_t Mesh::identity() const {
+    return shared_->identity;
+}
+
 std::shared_ptr<const MeshData> Mesh::snapshot() const {
     std::lock_guard lock(shared_->mutex);
     return shared_->data;

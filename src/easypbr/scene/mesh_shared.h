@@ -10,6 +10,7 @@
 namespace easypbr {
 
 struct Mesh::Shared {
+    const uint64_t identity = next_revision();
     mutable std::mutex mutex;
     std::shared_ptr<const MeshData> data;
     std::vector<std::weak_ptr<Shared>> parents;  ///< guarded by the one mutex of all hierarchies

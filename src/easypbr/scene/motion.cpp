@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace easypbr {
@@ -57,27 +58,28 @@ Mat3d linear_between(const Mat3d& from, const Mat3d& to, double t) {
 
 }  // namespace
 
-Motion::Motion(const SceneSnapshot& scene, const Camera& camera) : camera(camera) {
-    const std::vector<ObjectKey> keys = object_keys(scene);
-    for (size_t i = 0; i < keys.size(); ++i) poses[keys[i]] = scene.objects[i].T_world_mesh;
+Motion::Motion(const SceneSnapshot& scene, const Camera& camera)
+    : camera(camera), objects(object_keys(scene)) {
+    poses.reserve(objects.size());
+    for (const SceneSnapshot::Object& object : scene.objects) poses.push_back(object.T_world_mesh);
 }
 
 std::vector<Eigen::Affine3d> Motion::poses_before(const SceneSnapshot& scene) const {
-    const std::vector<ObjectKey> keys = object_keys(scene);
+    const std::vector<std::optional<size_t>> known = partners(object_keys(scene), objects);
     std::vector<Eigen::Affine3d> before;
-    before.reserve(keys.size());
-    for (size_t i = 0; i < keys.size(); ++i) {
-        const auto known = poses.find(keys[i]);
-        before.push_back(known == poses.end() ? scene.objects[i].T_world_mesh : known->second);
-    }
+    before.reserve(known.size());
+    for (size_t i = 0; i < known.size(); ++i)
+        before.push_back(known[i] ? poses[*known[i]] : scene.objects[i].T_world_mesh);
     return before;
 }
 
 void Motion::replace(const SceneSnapshot& scene, const MovedMeshes& moved) {
-    const std::vector<ObjectKey> keys = object_keys(scene);
     const std::vector<Eigen::Affine3d> known = poses_before(scene);
-    std::map<const void*, Carried> carried;  // by children
-    for (size_t i = 0; i < keys.size(); ++i) {
+    objects = object_keys(scene);
+    poses.clear();
+    poses.reserve(objects.size());
+    std::map<uint64_t, Carried> carried;  // by children
+    for (size_t i = 0; i < objects.size(); ++i) {
         const SceneSnapshot::Object& object = scene.objects[i];
         const auto parent = carried.find(object.node);
         const Carried above = parent == carried.end() ? Carried() : parent->second;
@@ -91,7 +93,7 @@ void Motion::replace(const SceneSnapshot& scene, const MovedMeshes& moved) {
         if (own != moved.end() || above.replaced)
             below.replaced = change(known[i], before, above.replaced.value_or(Eigen::Affine3d::Identity()));
         for (const Mesh& child : object.mesh->children) carried[child.identity()] = below;
-        poses[keys[i]] = before;
+        poses.push_back(before);
     }
 }
 

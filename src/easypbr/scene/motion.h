@@ -1,7 +1,6 @@
 // Motion between two pictures: where camera and objects were at any time between.
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "easypbr/scene/animation.h"
@@ -14,7 +13,8 @@ namespace easypbr {
 /// Camera and poses of the picture before.
 struct Motion {
     Camera camera;
-    std::map<ObjectKey, Eigen::Affine3d> poses;  ///< T_world_mesh
+    std::vector<ObjectKey> objects;
+    std::vector<Eigen::Affine3d> poses;  ///< T_world_mesh of each
 
     Motion() = default;
     Motion(const SceneSnapshot& scene, const Camera& camera);

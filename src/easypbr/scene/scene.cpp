@@ -44,7 +44,7 @@ auto& require_entry(Map& map, const std::string& name, const char* kind) {
 /// Adds the node and its descendants, with the poses of V + offset; what is invisible takes its descendants
 /// along. Descendants that are shown under a name of their own are left to that name.
 void add_nodes(const Mesh& mesh, const std::string& name, const std::string& root,
-               const Eigen::Affine3d& T_world_parent, int depth, const std::set<const void*>& shown,
+               const Eigen::Affine3d& T_world_parent, int depth, const std::set<uint64_t>& shown,
                std::vector<SceneSnapshot::Object>& objects) {
     require_mesh_depth(depth);
     const auto data = mesh.snapshot();
@@ -262,7 +262,7 @@ SceneSnapshot Scene::snapshot() const {
     std::lock_guard lock(shared_->mutex);
     uint64_t earliest = std::numeric_limits<uint64_t>::max();
     std::optional<Vec3d> origin;
-    std::set<const void*> shown;
+    std::set<uint64_t> shown;
     for (const auto& [name, entry] : shared_->meshes) shown.insert(entry.mesh.identity());
     for (const auto& [name, entry] : shared_->meshes) {
         if (entry.hidden) continue;

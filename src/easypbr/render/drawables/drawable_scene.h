@@ -101,7 +101,7 @@ class DrawableCache {
     RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, float>, SharedCreases> creases_;
     /// Of a node with these F and source_vertex: those of its first V, so that edges of a mesh that deforms
     /// do not turn sharp and smooth from picture to picture.
-    RevisionCache<std::tuple<const void*, uint64_t, uint64_t, float>, SharedCreases> kept_creases_;
+    RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, float>, SharedCreases> kept_creases_;
 };
 
 }  // namespace easypbr::render
