@@ -1,6 +1,9 @@
 // Pictures that get better call by call, and what is seen where in them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
@@ -123,6 +126,60 @@ TEST(Refine, ShowsMotionAsTheStillDoes) {
     EXPECT_TRUE(same(complete(session).picture(), sharp));
     session.settings().motion_blur.enabled = false;
     EXPECT_TRUE(same(complete(session, motion).picture(), sharp));
+}
+
+/// To one step of 8 bits: a pose that is mixed with itself differs in the last bit.
+bool alike(const Image& a, const Image& b) {
+    return std::ranges::equal(a.bytes(), b.bytes(), [](std::byte x, std::byte y) {
+        return std::abs(std::to_integer<int>(x) - std::to_integer<int>(y)) <= 1;
+    });
+}
+
+// What is drawn for a lens is wider than the picture: that is no motion.
+TEST(Refine, ALensAtRestIsNotBlurred) {
+    Session session = ball_session();
+    distort(session);
+    const Camera camera = session.camera();
+    const Image sharp = session.render();
+    session.settings().motion_blur.enabled = true;
+    session.settings().motion_blur.shutter = 1;
+    session.forget_motion();
+    session.begin_motion();
+    EXPECT_TRUE(alike(session.render(), sharp)) << "begun";
+    EXPECT_TRUE(alike(session.render(), sharp)) << "remembered";
+    session.render({Vec2i(128, 96), 1});
+    EXPECT_TRUE(alike(session.render(), sharp)) << "after a larger picture";
+    const auto motion = std::make_shared<const Motion>(session.scene().snapshot(), camera);
+    EXPECT_TRUE(alike(complete(session, motion).picture(), sharp)) << "refined";
+    EXPECT_FALSE(session.refine({}, true, motion).drew);
+    // Nor is another lens, or one that is put on or taken off.
+    Camera other = camera, pinhole = camera;
+    other.distortion->k[0] = 0.2;
+    pinhole.distortion.reset();
+    pinhole.intrinsics->skew = 0;
+    for (const Camera& before : {other, pinhole}) {
+        session.begin_motion(before);
+        EXPECT_TRUE(alike(session.render(), sharp)) << "from another lens";
+    }
+    session.set_camera(pinhole);
+    const Image taken_off = session.render();
+    session.forget_motion();
+    EXPECT_TRUE(alike(session.render(), taken_off));
+}
+
+TEST(Refine, ShowsMotionThroughALensAsTheStillDoes) {
+    Session session = ball_session();
+    distort(session);
+    session.settings().motion_blur.enabled = true;
+    session.settings().motion_blur.shutter = 1;
+    Camera from = session.camera();
+    from.T_world_cam.translation().x() += 0.5;
+    session.begin_motion(from);
+    const Image still = session.render(), sharp = session.render();
+    EXPECT_FALSE(alike(still, sharp));
+    const auto motion = std::make_shared<const Motion>(session.scene().snapshot(), from);
+    EXPECT_TRUE(same(complete(session, motion).picture(), still));
+    EXPECT_FALSE(session.refine({}, true, motion).drew);
 }
 
 TEST(Refine, PickingLeavesAFinishedPictureAlone) {

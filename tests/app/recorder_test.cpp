@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <regex>
 #include <stdexcept>
 
@@ -162,6 +163,30 @@ TEST_F(Recordings, TheFirstFrameIsBlurredLikeTheOthers) {
     EXPECT_FALSE(same(sharp, blurred));
     EXPECT_TRUE(same(first_frame(closed), blurred));
     EXPECT_TRUE(same(first_frame(open), sharp));
+}
+
+// What is drawn for a lens is wider than the picture: that is no motion.
+TEST_F(Recordings, ARestingPathThroughALensIsSharp) {
+    Camera camera = Camera::look_at(Vec3d(2, 1.5, 3), Vec3d(0, 0, 0));
+    camera.intrinsics = Intrinsics{45, 45, 23.5, 15.5, 48, 32};
+    camera.distortion = Distortion::from_coefficients(DistortionModel::brown_conrady, {-0.3, 0.1, 0, 0});
+    scene_.show(make_box(), "sphere");
+    session_.settings().image.samples = 4;
+    session_.set_camera(camera);
+    const Image sharp = session_.render();
+    session_.settings().motion_blur.enabled = true;
+    recorder_.record_path(CameraPath({CameraKey::at(camera), CameraKey::at(camera)}), folder_ / "l_%d.png",
+                          {}, 2);
+    for (int i = 0; i < 2; ++i) {
+        const Image frame = io::load_image(frame_path(folder_ / "l_%d.png", i));
+        // A step of 8 bits: a pose that is mixed with itself differs in the last bit.
+        EXPECT_TRUE(std::ranges::equal(frame.bytes(), sharp.bytes(),
+                                       [](std::byte a, std::byte b) {
+                                           return std::abs(std::to_integer<int>(a) -
+                                                           std::to_integer<int>(b)) <= 1;
+                                       }))
+            << "frame " << i;
+    }
 }
 
 TEST_F(Recordings, TheClockMakesStepsOfAFrame) {

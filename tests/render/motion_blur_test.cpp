@@ -206,6 +206,21 @@ TEST(Motion, TurnsEvenlyTheShorterWay) {
     EXPECT_LT((between(a, b, 1).matrix() - b.matrix()).norm(), 1e-12);
 }
 
+// A picture of 100 pixels a side becomes one of 200: in the units of the second one the skew was 4, and the
+// middle at 99.5.
+TEST(Motion, OfIntrinsicsIsInTheUnitsOfTheSecondPicture) {
+    Camera from, to;
+    from.intrinsics = Intrinsics{50, 60, 49.5, 49.5, 100, 100, 2};
+    to.intrinsics = Intrinsics{140, 120, 99.5, 103.5, 200, 200, 8};
+    const Intrinsics k = *between(from, to, 0.25).intrinsics;
+    EXPECT_EQ(k.fx, 110);
+    EXPECT_EQ(k.fy, 120);
+    EXPECT_EQ(k.cx, 99.5);
+    EXPECT_EQ(k.cy, 100.5);
+    EXPECT_EQ(k.skew, 5);
+    EXPECT_EQ(k.width, 200);
+}
+
 TEST(Motion, OfMirroredObjectsTurnsToo) {
     const auto pose = [](double angle_deg, const Vec3d& scale, const Vec3d& axis) {
         return Eigen::Affine3d(Eigen::Translation3d(angle_deg, 2, 3) *

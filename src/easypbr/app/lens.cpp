@@ -76,6 +76,21 @@ LensMap lens_map(const Camera& camera, Vec2i size) {
     return map;
 }
 
+Camera drawn_before(const Camera& before, const Camera& now, const LensMap& map) {
+    Camera drawn = before;
+    drawn.distortion.reset();
+    if (!drawn.intrinsics) return drawn;
+    drawn.intrinsics->skew = 0;
+    if (map.is_identity() || before.projection != Projection::perspective) return drawn;
+    const Mat3d K = before.opencv_K(map.size.x(), map.size.y()),
+                K_now = now.opencv_K(map.size.x(), map.size.y());
+    const Intrinsics& wide = *map.drawn.intrinsics;
+    drawn.intrinsics = Intrinsics{
+        K(0, 0),    K(1, 1),    wide.cx + (K(0, 2) - K_now(0, 2)), wide.cy + (K(1, 2) - K_now(1, 2)),
+        wide.width, wide.height};
+    return drawn;
+}
+
 namespace {
 
 template <class T>

@@ -29,6 +29,11 @@ struct LensMap {
 /// (Distortion::undistort) or when the picture to draw would be larger than `max_image_side`.
 LensMap lens_map(const Camera& camera, Vec2i size);
 
+/// The camera of the picture before as the picture of `now` is drawn, whose map this is: without distortion
+/// and skew, and where `now` is drawn wider, as much wider. With the intrinsics of `now` it has exactly those
+/// of what is drawn. Of its own distortion nothing is left: how a lens bends does not move.
+Camera drawn_before(const Camera& before, const Camera& now, const LensMap& map);
+
 /// Keeps the map that was asked for last.
 class LensCache {
   public:

@@ -10,6 +10,7 @@
 #include "easypbr/app/prepared.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/stopwatch.h"
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
@@ -181,6 +182,12 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
     Drawn drawn;
     drawn.camera_ = prepared.resolved.camera;
     drawn.finish_.lens = lenses_.get(drawn.camera_, prepared.options.size);
+    if (auto& motion = prepared.options.motion;
+        motion && (drawn.camera_.is_warped() || motion->camera.is_warped())) {
+        auto as_drawn = std::make_shared<Motion>(*motion);
+        as_drawn->camera = drawn_before(motion->camera, drawn.camera_, drawn.lens());
+        motion = std::move(as_drawn);
+    }
     if (drawn.camera_.is_warped()) {
         prepared.options.size = drawn.lens().drawn_size;
         prepared.resolved.camera.distortion.reset();
@@ -225,7 +232,7 @@ Drawn Session::draw_once(const PictureOptions& options) {
         drawn.tiled_ = std::make_shared<const Image>(picture.draw(*device_->renderer));
     gl::Context::check();
     annotate(drawn, prepared);
-    motion_.keep(prepared.scene, prepared.resolved.camera);
+    motion_.keep(prepared.scene, drawn.camera());
     latch_from(prepared);
     return drawn;
 }
@@ -267,12 +274,12 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
     if (done.began) {
         refined_.reset();
         warnings_.check_light(prepared.scene, *settings_, prepared.resolved);
-        const Vec2i asked = prepared.options.size;
+        const render::DrawOptions asked = prepared.options;
         Drawn drawn = begin(prepared, true, false);
         renderer.begin(prepared.scene, prepared.resolved, prepared.options, prepared.images);
         annotate(drawn, prepared);
         latch_from(prepared);
-        prepared.options.size = asked;  // What the next call compares with.
+        prepared.options = asked;  // What the next call compares with.
         refined_ = std::make_unique<Refined>(
             Refined{std::move(prepared), std::move(drawn), {}, 0, false, device_.number(), device_->sum});
     }

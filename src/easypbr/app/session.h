@@ -222,8 +222,9 @@ class Session {
     /// An automatic camera that is not latched yet leaves the insets and the annotation's strip free.
     ResolvedSettings resolve_framed(const SceneSnapshot& scene, Vec2i size,
                                     std::optional<int> samples = std::nullopt) const;
-    /// Before anything is drawn: replaces a camera that is warped, and the size, by what has to be drawn;
-    /// outdates what was drawn before. Returns what will be drawn, a picture, surfaces, or both.
+    /// Before anything is drawn: replaces a camera that is warped, the size, and the camera that the motion
+    /// begins from by what has to be drawn; outdates what was drawn before. Returns what will be drawn, a
+    /// picture, surfaces, or both.
     Drawn begin(Prepared& prepared, bool picture, bool surfaces);
     /// What lies over the picture.
     void annotate(Drawn& drawn, const Prepared& prepared);

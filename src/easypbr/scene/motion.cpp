@@ -114,14 +114,15 @@ Camera between(const Camera& from, const Camera& to, double t) {
     camera.ortho_height = mix(from.ortho_height, to.ortho_height, t);
     if (from.intrinsics && to.intrinsics) {
         const Intrinsics &k = *from.intrinsics, &l = *to.intrinsics;
-        // In the units of the second picture.
+        // In the units of the second picture: exactly as they are where those are the first one's.
         const double x = double(l.width) / k.width, y = double(l.height) / k.height;
         camera.intrinsics = {mix(k.fx * x, l.fx, t),
                              mix(k.fy * y, l.fy, t),
-                             mix((k.cx + 0.5) * x - 0.5, l.cx, t),
-                             mix((k.cy + 0.5) * y - 0.5, l.cy, t),
+                             mix(k.cx * x + 0.5 * (x - 1), l.cx, t),
+                             mix(k.cy * y + 0.5 * (y - 1), l.cy, t),
                              l.width,
-                             l.height};
+                             l.height,
+                             mix(k.skew * x, l.skew, t)};
     }
     return camera;
 }

@@ -31,8 +31,8 @@ struct Motion {
 /// mirrored one all changes linearly.
 Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, double t);
 
-/// The same for cameras: pose, angle of view or height, and intrinsics when both have them. Projection and
-/// what is only in one are those of the second.
+/// The same for cameras: pose, angle of view or height, and intrinsics when both have them. Projection,
+/// distortion and what is only in one are those of the second.
 Camera between(const Camera& from, const Camera& to, double t);
 
 }  // namespace easypbr

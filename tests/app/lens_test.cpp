@@ -1,0 +1,109 @@
+// The camera of the picture before, as the picture of a lens is drawn.
+#include "easypbr/app/lens.h"
+
+#include <gtest/gtest.h>
+
+#include "easypbr/scene/motion.h"
+
+namespace easypbr::app::lens_test {
+namespace {
+
+const Vec2i size(64, 48);
+
+/// Numbers that no sum with others leaves as they are.
+Camera pinhole() {
+    Camera camera = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
+    camera.intrinsics = Intrinsics{80.1, 79.7, 31.3, 24.7, 64, 48};
+    return camera;
+}
+
+Camera with_lens(const std::vector<double>& coefficients, double skew = 0) {
+    Camera camera = pinhole();
+    camera.intrinsics->skew = skew;
+    if (!coefficients.empty())
+        camera.distortion = Distortion::from_coefficients(DistortionModel::brown_conrady, coefficients);
+    return camera;
+}
+
+void expect_equal(const Intrinsics& a, const Intrinsics& b) {
+    EXPECT_EQ(a.fx, b.fx);
+    EXPECT_EQ(a.fy, b.fy);
+    EXPECT_EQ(a.cx, b.cx);
+    EXPECT_EQ(a.cy, b.cy);
+    EXPECT_EQ(a.width, b.width);
+    EXPECT_EQ(a.height, b.height);
+    EXPECT_EQ(a.skew, b.skew);
+}
+
+TEST(DrawnBefore, IsExactlyWhatIsDrawnWhereNothingChanges) {
+    for (const Camera& now :
+         {with_lens({-0.3, 0.1, 0.01, 0.02}), with_lens({}, 4.3), with_lens({0.2, 0, 0, 0}, 4.3)})
+        for (const int scale : {1, 3}) {
+            const LensMap map = lens_map(now, scale * size);
+            const Camera before = drawn_before(now, now, map);
+            EXPECT_FALSE(before.is_warped());
+            expect_equal(*before.intrinsics, *map.drawn.intrinsics);
+            for (const double t : {0.0, 0.3, 1.0})
+                expect_equal(*between(before, map.drawn, t).intrinsics, *map.drawn.intrinsics);
+        }
+}
+
+// What bends rays stays with the picture: another distortion is no motion.
+TEST(DrawnBefore, KnowsNoOtherLens) {
+    const Camera now = with_lens({-0.3, 0.1, 0.01, 0.02}, 4.3);
+    const LensMap map = lens_map(now, size);
+    for (const Camera& before : {pinhole(), with_lens({0.1, 0, 0, 0}), with_lens({0.1, 0, 0, 0}, -2)})
+        expect_equal(*drawn_before(before, now, map).intrinsics, *map.drawn.intrinsics);
+}
+
+// A picture of twice the size of K: the focal length grew from 80.1 to 90.1, and the principal point came
+// from 3 to the right and 2 further up.
+TEST(DrawnBefore, ZoomsAndShiftsAsTheCameraDoes) {
+    const Camera now = with_lens({-0.3, 0.1, 0, 0});
+    Camera before = now;
+    before.intrinsics->fx += 10;
+    before.intrinsics->cx += 3;
+    before.intrinsics->cy -= 2;
+    const LensMap map = lens_map(now, 2 * size);
+    const Intrinsics drawn = *drawn_before(before, now, map).intrinsics, &wide = *map.drawn.intrinsics;
+    // Rounding of numbers up to 200.
+    EXPECT_NEAR(drawn.fx, wide.fx + 20, 1e-12);
+    EXPECT_NEAR(drawn.fy, wide.fy, 1e-12);
+    EXPECT_NEAR(drawn.cx, wide.cx + 6, 1e-12);
+    EXPECT_NEAR(drawn.cy, wide.cy - 4, 1e-12);
+}
+
+// Of a skewed camera without distortion a pixel's place in what is drawn has the ray of the camera before.
+TEST(DrawnBefore, OfASkewedCameraSeesItsRays) {
+    const Camera now = with_lens({}, 4);
+    Camera before = now;
+    before.intrinsics->cx += 3;
+    const LensMap map = lens_map(now, size);
+    const Intrinsics drawn = *drawn_before(before, now, map).intrinsics, &k = *before.intrinsics;
+    for (const Vec2i& pixel : {Vec2i(0, 0), Vec2i(63, 0), Vec2i(20, 40), Vec2i(63, 47)}) {
+        const double y = (pixel.y() - k.cy) / k.fy, x = (pixel.x() - k.cx - k.skew * y) / k.fx;
+        const Vec2 place = map.source[size_t(pixel.y() * size.x() + pixel.x())];
+        // Places are in single precision: 4e-6 of 64 pixels, 5e-8 of the focal length.
+        EXPECT_NEAR((place.x() - drawn.cx) / drawn.fx, x, 1e-6);
+        EXPECT_NEAR((place.y() - drawn.cy) / drawn.fy, y, 1e-6);
+    }
+}
+
+TEST(DrawnBefore, WithoutALensIsTheCameraItself) {
+    const Camera now = pinhole();
+    const LensMap map = lens_map(now, size);
+    Camera before = pinhole();
+    before.intrinsics->cx += 3;
+    expect_equal(*drawn_before(before, now, map).intrinsics, *before.intrinsics);
+    // Nor has it one left that the lens was taken off.
+    EXPECT_FALSE(drawn_before(with_lens({-0.3, 0.1, 0, 0}, 4), now, map).is_warped());
+    Camera orthographic = now;
+    orthographic.projection = Projection::orthographic;
+    const Camera lens = with_lens({-0.3, 0.1, 0, 0});
+    EXPECT_EQ(drawn_before(orthographic, lens, lens_map(lens, size)).projection, Projection::orthographic);
+    const Camera plain = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
+    EXPECT_FALSE(drawn_before(plain, lens, lens_map(lens, size)).intrinsics);
+}
+
+}  // namespace
+}  // namespace easypbr::app::lens_test
