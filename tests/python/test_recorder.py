@@ -45,6 +45,8 @@ def test_path_passes_through_its_keys():
             np.testing.assert_allclose(path.pose(time), key, atol=1e-12)
         np.testing.assert_allclose(path.keys, T, atol=1e-15)
     assert len(path.frame_times(30)) == 76 and len(path.times(4)) == 4
+    # Both ends, however short the path is.
+    assert path.frame_times(0.1) == [0, 2.5]
 
 
 def test_path_takes_opencv_poses_and_cameras():

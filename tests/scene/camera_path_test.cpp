@@ -249,6 +249,9 @@ TEST(CameraPath, FrameTimesCoverThePath) {
     const CameraPath closed(keys, {PathMode::smooth, PathEase::none, true});
     EXPECT_EQ(closed.frame_times(30).size(), 90u);
     EXPECT_NEAR(closed.frame_times(30)[1], 1 / 30.0, 1e-15);
+    // Both ends of an open path are in it, however short the path is.
+    EXPECT_EQ(CameraPath(keys).frame_times(0.1), (std::vector<double>{0, 2}));
+    EXPECT_EQ(closed.frame_times(0.1), (std::vector<double>{0}));
     EXPECT_THROW(closed.frame_times(0), ArgumentError);
     EXPECT_THROW(closed.times(0), ArgumentError);
 }

@@ -83,8 +83,8 @@ class CameraPath {
 
     /// `count` times evenly from start to end; of a closed path the end, which is the start, is left out.
     std::vector<double> times(int count) const;
-    /// Times of a video's frames: round(duration * fps) of a closed path, one more of an open one, so that
-    /// both ends are in it. Throws ArgumentError unless fps > 0.
+    /// Times of a video's frames: round(duration * fps) of a closed path, but at least 1, and one more of an
+    /// open one, so that both ends are in it. Throws ArgumentError unless fps > 0.
     std::vector<double> frame_times(double fps) const;
     /// Frames per second with which the frames at times(count) show the path in its duration.
     double frame_rate(int count) const;

@@ -128,8 +128,9 @@ void bind_times(nb::class_<CameraPath>& path) {
             nb::sig("def keys(self) -> list[numpy.ndarray]"),
             "4 x 4 poses of the keys, OpenGL axes; none for an orbit.")
         .def("frame_times", &CameraPath::frame_times, nb::arg("fps"),
-             "Times of the frames of a video: round(duration * fps) for a closed path, one more for an open "
-             "one.")
+             "Times of the frames of a video: round(duration * fps) for a closed path, but at least 1, and "
+             "one "
+             "more for an open one.")
         .def("times", &CameraPath::times, nb::arg("count"),
              "That many evenly spaced times; of a closed path without the end.")
         .def("frame_rate", &CameraPath::frame_rate, nb::arg("count"),

@@ -335,7 +335,7 @@ std::vector<double> CameraPath::frame_times(double fps) const {
     if (frames > 1e8)
         throw ArgumentError(fmt::format("camera path: {} seconds at {} frames per second are too many frames",
                                         duration_s_, fps));
-    return times(std::max(1, int(frames) + (options_.closed ? 0 : 1)));
+    return times(std::max(1, int(frames)) + (options_.closed ? 0 : 1));
 }
 
 }  // namespace easypbr
