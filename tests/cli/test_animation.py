@@ -164,6 +164,15 @@ def test_the_automatic_camera_shows_all_of_a_recording(render, moving, tmp_path)
     assert max(areas) < 6 * min(areas)
 
 
+@pytest.mark.parametrize("folder", ["out", "out/"])
+def test_an_animation_alone_is_recorded_to_a_folder(render, moving, tmp_path, folder):
+    render(moving, "--animation", "go", "--fps", "4", "-o", folder, *LOOK)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["frame_00000.png", "frame_00001.png"]
+    # Standard output takes one picture.
+    still = render(moving, "--animation", "go", "-o", "-", *LOOK, text=False).stdout
+    assert still.startswith(b"\x89PNG")
+
+
 def test_what_is_not_there(render, moving, box):
     assert "there is no animation 'og'" in render(moving, "--animation", "og", "-o", "a.png", code=1).stderr
     assert "the files hold no animations" in render(box, "--animation", "go", "-o", "a.png", code=1).stderr

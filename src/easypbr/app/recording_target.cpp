@@ -140,7 +140,8 @@ void check_folder(const fs::path& pattern) {
 }  // namespace
 
 bool is_recording_name(const fs::path& path) {
-    return io::is_video(path) || number_in(path.filename().string());
+    const bool names_folder = path.has_relative_path() && is_folder(path);
+    return io::is_video(path) || number_in(path.filename().string()) || names_folder;
 }
 
 fs::path frame_path(const fs::path& path, int index) {
@@ -162,8 +163,7 @@ fs::path free_picture(const fs::path& path) {
 
 fs::path free_recording(const fs::path& path) {
     // What cannot be recorded to is reported when the recording begins.
-    const bool is_known = is_recording_name(path) || (path.has_relative_path() && is_folder(path));
-    return is_known ? free_path(path, holds_recording) : path;
+    return is_recording_name(path) ? free_path(path, holds_recording) : path;
 }
 
 Encoding encoding_for_recording(const fs::path& path, bool deep) {

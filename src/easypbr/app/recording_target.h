@@ -19,7 +19,8 @@ std::filesystem::path frame_path(const std::filesystem::path& path, int index);
 std::filesystem::path free_picture(const std::filesystem::path& path);
 std::filesystem::path free_recording(const std::filesystem::path& path);
 
-/// Whether it is a video's name or numbered pictures': "out.mp4", "out/frame_%04d.png".
+/// Whether it is a video's name or numbered pictures': "out.mp4", "out/frame_%04d.png", or a folder for them:
+/// "out/", "out".
 bool is_recording_name(const std::filesystem::path& path);
 
 /// What the frames must be drawn as.

@@ -14,6 +14,7 @@
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/pose_file.h"
+#include "easypbr/cli/standard_output.h"
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -387,7 +388,8 @@ void declare_render_options(CLI::App& command, RenderOptions& options) {
 }
 
 bool RenderOptions::records() const {
-    return turntable || !camera_path.empty() || (!animation.empty() && app::is_recording_name(output));
+    const bool is_named = output != standard_output && app::is_recording_name(output);
+    return turntable || !camera_path.empty() || (!animation.empty() && is_named);
 }
 
 void apply(const RenderOptions& options, Settings& settings) {
