@@ -202,7 +202,7 @@ class Viewer(Sharing):
 
     def turntable(self, duration_s: float = 4.0) -> "_easypbr.CameraPath":
         """A path of one turn around the content from the current camera; an automatic camera is far enough away to keep
-        the content in the image."""
+        the content in the image, with all that an animation that plays moves in that time."""
         return self._handle.turntable(duration_s)
 
     def refit(self) -> None:

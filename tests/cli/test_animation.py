@@ -144,24 +144,59 @@ def test_an_animation_alone_is_recorded(render, moving_camera, tmp_path):
     assert (png.read(tmp_path / "r_0.png") != png.read(tmp_path / "r_4.png")).any()
 
 
-def test_the_automatic_camera_shows_all_of_a_recording(render, moving, tmp_path):
-    """A triangle that goes five of its widths to the right: it is in all pictures whole, at no picture's border."""
+def send(moving, place):
+    """Lets the triangle, bright from both sides, go to another place in its half second."""
     file = json.loads(moving.read_text())
+    file["materials"] = [{"doubleSided": True, "emissiveFactor": [1, 1, 1]}]
+    file["meshes"][0]["primitives"][0]["material"] = 0
     head = "data:application/octet-stream;base64,"
     data = bytearray(base64.b64decode(file["buffers"][0]["uri"][len(head):]))
-    data[44:68] = np.array([0, 0, 0, 10, 0, 0], "<f4").tobytes()
+    data[44:68] = np.array([0, 0, 0, *place], "<f4").tobytes()
     file["buffers"][0]["uri"] = head + base64.b64encode(data).decode()
     moving.write_text(json.dumps(file))
-    render(moving, "--animation", "go", "--fps", "10", "-o", "f_%d.png", "--exposure", "1", "--preset", "dark")
+
+
+def whole_areas(folder, pattern, count):
+    """Pixels of the triangle in each of the pictures; it reaches no picture's border."""
     areas = []
-    for i in range(5):
-        picture = png.read(tmp_path / f"f_{i}.png")[..., :3].astype(int)
+    for i in range(count):
+        picture = png.read(folder / (pattern % i))[..., :3].astype(int)
         seen = np.abs(picture - 64).max(2) > 8
         assert not (seen[0].any() or seen[-1].any() or seen[:, 0].any() or seen[:, -1].any()), i
         areas.append(seen.sum())
+    return areas
+
+
+NO_GROUND = ("--exposure", "1", "--preset", "dark", "--set", "ground.mode=none")
+
+
+def test_the_automatic_camera_shows_all_of_a_recording(render, moving, tmp_path):
+    """A triangle that goes five of its widths to the right: it is in all pictures whole, at no picture's border."""
+    send(moving, (10, 0, 0))
+    render(moving, "--animation", "go", "--fps", "10", "-o", "f_%d.png", "--exposure", "1", "--preset", "dark")
+    areas = whole_areas(tmp_path, "f_%d.png", 5)
     assert min(areas) > 0
     # It is seen from 30 degrees to the side: it comes nearer by half of its way, from about three times that to twice.
     assert max(areas) < 6 * min(areas)
+
+
+@pytest.mark.parametrize("frames", [5, 76])
+def test_a_turntable_shows_all_of_a_recording(render, moving, tmp_path, frames):
+    """The triangle rises by five of its heights. It is seen whole from all sides, in a turn too in which it does so fifteen
+    times: sixteen moments evenly over the 7.5 s to its last frame would be the same pose."""
+    send(moving, (0, 10, 0))
+    render(moving, "--animation", "go", "--fps", "10", "--turntable", frames, "-o", "f_%d.png", *NO_GROUND)
+    areas = whole_areas(tmp_path, "f_%d.png", frames)
+    # From 30 degrees to the side on in fifths of a turn: none of these is edge-on.
+    assert min(areas[:: frames // 5]) > 0
+
+
+def test_a_turntable_without_perspective_shows_all_of_a_recording(render, moving, tmp_path):
+    """What rises stays in the picture: its height is that of an image of all poses."""
+    send(moving, (0, 10, 0))
+    render(moving, "--animation", "go", "--fps", "10", "--turntable", "5", "-o", "f_%d.png", *NO_GROUND, "--ortho", "auto",
+           "--set", "camera.margin=0.2")
+    assert min(whole_areas(tmp_path, "f_%d.png", 5)) > 0
 
 
 @pytest.mark.parametrize("folder", ["out", "out/"])

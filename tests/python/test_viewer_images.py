@@ -211,6 +211,30 @@ def test_lights_and_cameras_of_a_file_go_with_it(tmp_path):
     assert scene.light("lamp").position == pytest.approx((1, 0, 9))
 
 
+def test_a_turntable_is_around_what_an_animation_moves(tmp_path):
+    """The triangle's middle goes from x = 0.5 to 2.5: a turn is around x = 0.5 at rest, and 1.5 while it plays."""
+    file = animated(tmp_path)
+    scene = Scene()
+    scene.show(file.mesh, "file")
+    view = Viewer((32, 24), {"image": {"samples": 1}}, scene)
+
+    def middle_and_radius(path):
+        begin, opposite = (path.pose(seconds)[:3, 3] for seconds in (0, 1))
+        return (begin[0] + opposite[0]) / 2, np.linalg.norm(begin - opposite) / 2
+
+    middle, near = middle_and_radius(view.turntable(2))
+    assert middle == pytest.approx(0.5)
+    view.play(file.animations)
+    triangle = file.mesh.children[0]
+    before = triangle.T_world_mesh
+    middle, far = middle_and_radius(view.turntable(2))
+    # Half a diagonal of 1 x 1 has become one of 3 x 1.
+    assert middle == pytest.approx(1.5) and far > 1.5 * near
+    np.testing.assert_array_equal(triangle.T_world_mesh, before)
+    view.pause()
+    assert middle_and_radius(view.turntable(2)) == pytest.approx((0.5, near))
+
+
 def test_an_animation_plays_in_a_recording(tmp_path):
     file = animated(tmp_path)
     scene = Scene()

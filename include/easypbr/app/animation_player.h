@@ -77,6 +77,13 @@ class AnimationPlayer {
     /// Animations::motion(). At its beginning the animation has not moved.
     MovedMeshes motion(double seconds) const;
 
+    /// In how many of the clock's next `seconds` all is shown that they show: at most one time around, and 0
+    /// when nothing plays.
+    double seconds_ahead(double seconds) const;
+    /// Puts the meshes where they will be `seconds` of the clock from now, while it plays; 0: back where they
+    /// were put last. Time and lights stay as they are. Nothing happens when no animation is known.
+    void look_ahead(double seconds);
+
     /// After the clock's tick: puts the meshes where they are now, while it plays.
     void update();
     /// After the clock's time was set.
@@ -91,6 +98,8 @@ class AnimationPlayer {
         size_t file, index;
     };
     void apply();
+    /// `seconds` of the clock from now.
+    double time_after(double seconds) const;
     bool has_ended() const;
     double start_s() const;
     void rebuild_names();

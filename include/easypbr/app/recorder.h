@@ -11,8 +11,13 @@
 #include "easypbr/app/picture.h"
 #include "easypbr/scene/camera_path.h"
 
+namespace easypbr {
+struct SceneSnapshot;
+}
+
 namespace easypbr::app {
 
+class AnimationPlayer;
 class Session;
 
 struct RecordingOptions {
@@ -104,5 +109,10 @@ class Recorder {
 /// A turn around the content's middle, once around the up axis, from the session's camera on. While the
 /// camera is automatic it is far enough away for the content to stay in the picture all the way around.
 CameraPath turntable(Session& session, double duration_s);
+/// The same around content that is seen over some time, as one, in place of the scene's.
+CameraPath turntable(Session& session, double duration_s, const SceneSnapshot& content);
+/// The same around what the scene shows in the next `duration_s` seconds of the player's clock: what an
+/// animation that plays moves stays in the picture too. The meshes are afterwards where they were.
+CameraPath turntable(Session& session, double duration_s, AnimationPlayer& player);
 
 }  // namespace easypbr::app

@@ -136,9 +136,13 @@ void AnimationPlayer::pause() {
     playing_ = false;
 }
 
-double AnimationPlayer::time() const {
-    const double time_s = playing_ ? base_ + speed_ * (clock_.time() - clock_base_) : base_;
+double AnimationPlayer::time_after(double seconds) const {
+    const double time_s = playing_ ? base_ + speed_ * (clock_.time() - clock_base_ + seconds) : base_;
     return loop_ ? time_s : std::clamp(time_s, 0.0, duration_s());
+}
+
+double AnimationPlayer::time() const {
+    return time_after(0);
 }
 
 double AnimationPlayer::shown_time() const {
@@ -179,6 +183,18 @@ MovedMeshes AnimationPlayer::motion(double seconds) const {
     if (empty()) return {};
     const Place place = places_[current_];
     return files_[place.file].animations.motion(place.index, time() - seconds * speed_, time(), loop_);
+}
+
+double AnimationPlayer::seconds_ahead(double seconds) const {
+    if (!is_playing() || speed_ == 0) return 0;
+    return std::min(seconds, duration_s() / std::abs(speed_));
+}
+
+void AnimationPlayer::look_ahead(double seconds) {
+    if (empty()) return;
+    const Place place = places_[current_];
+    const double time_s = seconds == 0 && applied_ ? *applied_ : time_after(seconds);
+    files_[place.file].animations.apply(place.index, time_s, loop_);
 }
 
 void AnimationPlayer::update() {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "easypbr/app/animation_player.h"
 #include "easypbr/app/orbit_grid.h"
+#include "easypbr/app/recorded_content.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
@@ -81,9 +84,10 @@ struct Round {
     FreePart part;
 };
 
-Round round_of(Session& session, const Vec2i& size) {
-    Round round{session.resolve(size), {}, {}, false, {}};
-    round.content = swept(session.scene().snapshot(), parse_up(round.resolved.settings.camera.up));
+/// `content`: what the settings were resolved for.
+Round round_of(Session& session, ResolvedSettings resolved, const SceneSnapshot& content, const Vec2i& size) {
+    Round round{std::move(resolved), {}, {}, false, {}};
+    round.content = swept(content, parse_up(round.resolved.settings.camera.up));
     round.camera = round.resolved.camera;
     round.fits =
         is_automatic(session.settings().camera) && round.content.radius + round.content.half_height > 0;
@@ -93,11 +97,22 @@ Round round_of(Session& session, const Vec2i& size) {
     return round;
 }
 
+Round round_of(Session& session, const Vec2i& size) {
+    return round_of(session, session.resolve(size), session.scene().snapshot(), size);
+}
+
 void place_at(Camera& camera, const Round& round, double distance) {
     const Mat3d axes = camera.T_world_cam.linear();
     const Vec2d aside = round.part.middle * distance;
     camera.T_world_cam.translation() =
         round.content.center + axes.col(2) * distance - axes.leftCols<2>() * aside;
+}
+
+CameraPath turn_around(const Round& round, double duration_s) {
+    Camera camera = round.camera;
+    if (round.fits)
+        place_at(camera, round, distance_for(round.content, camera.T_world_cam.linear(), round.part));
+    return CameraPath::orbit(camera, round.content.center, round.content.axis, 360, duration_s);
 }
 
 /// The camera turned up about the content's middle, in the vertical plane that it stands in.
@@ -126,11 +141,19 @@ int lowest_step(double elevation_deg, int rows, double step_deg) {
 }  // namespace
 
 CameraPath turntable(Session& session, double duration_s) {
-    const Round round = round_of(session, session.settings().image.size);
-    Camera camera = round.camera;
-    if (round.fits)
-        place_at(camera, round, distance_for(round.content, camera.T_world_cam.linear(), round.part));
-    return CameraPath::orbit(camera, round.content.center, round.content.axis, 360, duration_s);
+    return turn_around(round_of(session, session.settings().image.size), duration_s);
+}
+
+CameraPath turntable(Session& session, double duration_s, const SceneSnapshot& content) {
+    const Vec2i size = session.settings().image.size;
+    return turn_around(round_of(session, resolve_for(session, content, size), content, size), duration_s);
+}
+
+CameraPath turntable(Session& session, double duration_s, AnimationPlayer& player) {
+    const double ahead_s = player.seconds_ahead(duration_s);
+    if (!(ahead_s > 0)) return turntable(session, duration_s);
+    const auto put = [&](double seconds) { player.look_ahead(seconds); };
+    return turntable(session, duration_s, content_until(session.scene(), ahead_s, put));
 }
 
 void check_orbit_grid(int columns, int rows, double row_step_deg) {

@@ -5,10 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <future>
-#include <iterator>
 #include <span>
 
+#include "easypbr/app/kept_camera.h"
 #include "easypbr/app/output.h"
+#include "easypbr/app/recorded_content.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/recording_target.h"
 #include "easypbr/app/scene_files.h"
@@ -237,42 +238,50 @@ class RenderJob {
         const app::RecordingOptions recording = recording_of(options_);
         app::Clock clock;
         app::Recorder recorder(session_, clock);
-        if (!options_.turntable && !camera_path_) return record_animation(picture, recorder, recording);
-        const CameraPath path =
-            camera_path_ ? *camera_path_
-                         : app::turntable(session_, options_.turntable.value_or(1) / recording.rate());
-        const auto play = [&](int frame, int, double) { animate_next(frame / recording.rate()); };
-        animate_frame_before();
-        recorder.record_path(path, picture.output, recording, options_.turntable, play);
+        if (animation_) return record_animation(picture, recorder, recording);
+        const CameraPath path = camera_path_ ? *camera_path_ : app::turntable(session_, turn_s(recording));
+        recorder.record_path(path, picture.output, recording, options_.turntable);
     }
 
-    /// Once from --animation-time around, with the camera of the file that it moves, or one at rest that
-    /// shows all of it.
+    /// From --animation-time on. The camera is inferred for all of its frames; without a path, it is the
+    /// one of the file that the animation moves, or rests.
     void record_animation(const Picture& picture, app::Recorder& recorder,
                           const app::RecordingOptions& recording) {
-        std::vector<double> times(
-            size_t(std::max(1.0, std::round(animation_->duration_s() * recording.rate()))));
-        for (size_t i = 0; i < times.size(); ++i) times[i] = double(i) / recording.rate();
-        const Camera rest = resting_camera(times.back());
-        const auto camera = [&](double time_s) { return animation_->camera(time_of(time_s)).value_or(rest); };
+        const std::vector<double> times = frame_times(recording.rate());
+        const auto put = [this](double time_s) { animate(time_s); };
+        // After its duration it goes around.
+        const double seen_s = std::min(times.back(), animation_->duration_s());
+        const SceneSnapshot seen = app::content_until(session_.scene(), seen_s, put);
+        std::optional<CameraPath> path = camera_path_;
+        if (options_.turntable) path = app::turntable(session_, turn_s(recording), seen);
+        const ResolvedSettings rest = app::resolve_for(session_, seen, session_.settings().image.size);
+        const app::KeptCamera kept(session_);
+        session_.set_camera(rest.camera);
         animate_frame_before();
-        recorder.record_frames(times, -frame_s(), camera, picture.output, recording,
-                               [&](int, int, double time_s) { animate_next(time_s); });
+        if (path) {
+            const auto play = [&](int frame, int, double) { animate_next(times[size_t(frame)]); };
+            recorder.record_path(*path, picture.output, recording, options_.turntable, play);
+        } else {
+            const auto camera = [&](double time_s) {
+                return animation_->camera(time_of(time_s)).value_or(rest.camera);
+            };
+            const auto play = [&](int, int, double time_s) { animate_next(time_s); };
+            recorder.record_frames(times, -frame_s(), camera, picture.output, recording, play);
+        }
     }
 
-    /// The camera of what is to be seen from now until `end_s` seconds later, as the settings say.
-    Camera resting_camera(double end_s) {
-        constexpr int moments = 16;
-        SceneSnapshot all;
-        for (int i = moments - 1; i >= 0; --i) {
-            animate(end_s * i / (moments - 1));
-            SceneSnapshot scene = session_.scene().snapshot();
-            std::ranges::move(all.objects, std::back_inserter(scene.objects));
-            all = std::move(scene);
-        }
-        return resolve(all, session_.settings(), session_.settings().image.size, {},
-                       session_.annotation_strip())
-            .camera;
+    double turn_s(const app::RecordingOptions& recording) const {
+        return options_.turntable.value_or(1) / recording.rate();
+    }
+
+    /// Of a recording of the animation, in seconds from its first frame on.
+    std::vector<double> frame_times(double fps) const {
+        size_t count = size_t(std::max(1.0, std::round(animation_->duration_s() * fps)));
+        if (camera_path_) count = camera_path_->frame_times(fps).size();
+        if (options_.turntable) count = size_t(*options_.turntable);
+        std::vector<double> times(count);
+        for (size_t i = 0; i < count; ++i) times[i] = double(i) / fps;
+        return times;
     }
 
     double time_of(double time_s) const { return options_.animation_time.value_or(0) + time_s; }

@@ -75,7 +75,9 @@ void bind_recording(nb::class_<SharedViewer>& viewer) {
         .def(
             "turntable",
             [](SharedViewer& self, double duration_s) {
-                return self.run([&](Viewer& viewer) { return app::turntable(viewer.session(), duration_s); });
+                return self.run([&](Viewer& viewer) {
+                    return app::turntable(viewer.session(), duration_s, viewer.player());
+                });
             },
             nb::arg("duration_s"));
 }
