@@ -199,6 +199,27 @@ def test_a_turntable_without_perspective_shows_all_of_a_recording(render, moving
     assert min(whole_areas(tmp_path, "f_%d.png", 5)) > 0
 
 
+@pytest.mark.parametrize("recording", [(), ("--turntable", "5")])
+def test_the_ground_rests_below_what_falls(render, moving, tmp_path, recording):
+    """The triangle of 2 x 2 falls by 8 until the last frame: its lowest point is at -9, and the ground the usual gap of 5e-5 of
+    its diagonal below that, in all frames as if that height were given."""
+    send(moving, (0, -10, 0))
+    look = ("--animation", "go", "--fps", "10", *recording, "--camera-position", "6,2,12", "--camera-target", "0,-5,0",
+            "--exposure", "1", "--set", "ground.mode=plane", "--set", "ground.radius=30")
+    render(moving, "-o", "f_%d.png", "--save-settings", "after.json", *look)
+    for name, lowest in (("g", -9), ("h", -1)):
+        height = lowest - 5e-5 * np.sqrt(8)
+        render(moving, "-o", f"{name}_%d.png", *look, "--set", f"ground.height={height!r}")
+    for i in range(5):
+        frame, given, high = (png.read(tmp_path / f"{name}_{i}.png").astype(int) for name in "fgh")
+        # The heights differ in the last bits of a double: roundings may differ.
+        assert np.abs(frame - given).max() <= 1, i
+        # The ground given below the first pose is another: what is given counts.
+        assert np.abs(frame - high).max() > 8, i
+    # The height was that of the recording alone.
+    assert json.loads((tmp_path / "after.json").read_text())["settings"]["ground"]["height"] == "auto"
+
+
 @pytest.mark.parametrize("folder", ["out", "out/"])
 def test_an_animation_alone_is_recorded_to_a_folder(render, moving, tmp_path, folder):
     render(moving, "--animation", "go", "--fps", "4", "-o", folder, *LOOK)

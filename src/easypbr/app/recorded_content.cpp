@@ -1,9 +1,13 @@
 #include "easypbr/app/recorded_content.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
+#include <ranges>
 
 #include "easypbr/app/session.h"
+#include "easypbr/scene/auto_parameters.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 
@@ -26,6 +30,27 @@ ResolvedSettings resolve_for(Session& session, const SceneSnapshot& content, con
     // The legend is that of the scene: it names each object once.
     const Insets covered = session.insets().with(session.annotation_strip(size));
     return easypbr::resolve(content, session.settings(), size, {}, covered);
+}
+
+RestingGround::RestingGround(Session& session, const ResolvedSettings& resolved,
+                             const std::vector<double>& times_s, const PutAt& put)
+    : session_(session), height_(session.settings().ground.height) {
+    if (height_.is_pinned() || height_.is_follow()) return;
+    if (resolved.settings.ground.mode == GroundMode::none) return;
+    const Vec3d up = parse_up(resolved.settings.camera.up);
+    double lowest = height_.value_or(std::numeric_limits<double>::infinity());
+    for (const double time_s : std::views::reverse(times_s)) {
+        put(time_s);
+        const SceneSnapshot scene = session.scene().snapshot();
+        const detail::Content content(scene, session.settings().style);
+        lowest = std::min(lowest, detail::ground_below(content.bounds(), up));
+    }
+    // Pinned, not latched: an object that appears later releases what is latched.
+    if (std::isfinite(lowest)) session.settings().ground.height = lowest;
+}
+
+RestingGround::~RestingGround() {
+    session_.settings().ground.height = height_;
 }
 
 }  // namespace easypbr::app

@@ -243,8 +243,8 @@ class RenderJob {
         recorder.record_path(path, picture.output, recording, options_.turntable);
     }
 
-    /// From --animation-time on. The camera is inferred for all of its frames; without a path, it is the
-    /// one of the file that the animation moves, or rests.
+    /// From --animation-time on. The camera and the ground are inferred for all of its frames; without a
+    /// path, the camera is the one of the file that the animation moves, or rests.
     void record_animation(const Picture& picture, app::Recorder& recorder,
                           const app::RecordingOptions& recording) {
         const std::vector<double> times = frame_times(recording.rate());
@@ -255,6 +255,7 @@ class RenderJob {
         std::optional<CameraPath> path = camera_path_;
         if (options_.turntable) path = app::turntable(session_, turn_s(recording), seen);
         const ResolvedSettings rest = app::resolve_for(session_, seen, session_.settings().image.size);
+        const app::RestingGround ground(session_, rest, times, put);
         const app::KeptCamera kept(session_);
         session_.set_camera(rest.camera);
         animate_frame_before();
