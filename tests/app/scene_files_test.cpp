@@ -31,6 +31,11 @@ class WatchedFiles : public testing::Test {
         time_ += std::chrono::seconds(1);
         fs::last_write_time(folder_ / name, time_);
     }
+    /// As the command line shows and watches a file.
+    void show_and_watch(const std::string& name) {
+        const io::LoadedScene loaded = io::load_scene(folder_ / name);
+        files_.watch(folder_ / name, files_.add(loaded, folder_ / name), loaded);
+    }
     Vec3 color() const { return session_.scene().get("a").snapshot()->materials.at(0).base_color; }
     bool reloads() {
         const size_t before = notifications_.list().size();
@@ -66,9 +71,8 @@ TEST_F(WatchedFiles, MaterialsAndTexturesAreReadAgain) {
     write("m.mtl", red);
     write("other.mtl", red);
     write("a.obj", "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
-    session_.scene().show(io::load_scene(folder_ / "a.obj").mesh, "a");
+    show_and_watch("a.obj");
     ASSERT_EQ(color(), Vec3(1, 0, 0));
-    files_.watch(folder_ / "a.obj", "a");
     EXPECT_FALSE(reloads());
     write("other.mtl", blue);
     EXPECT_FALSE(reloads()) << "the file does not name it";
@@ -85,11 +89,27 @@ TEST_F(WatchedFiles, MaterialsAndTexturesAreReadAgain) {
     EXPECT_EQ(session_.scene().get("a").snapshot()->materials.at(0).base_color_texture.image->width(), 3);
 }
 
+// The name of a part says nothing of where it lies and what its name ends in; an image may be made later.
+TEST_F(WatchedFiles, PartsAreReadAgainWhateverTheirNames) {
+    fs::create_directories(folder_ / "parts");
+    write("parts/m.mtl", "newmtl m\nKd 1 0 0\nmap_Kd later.png\n");
+    write("a.obj", "mtllib parts/m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+    show_and_watch("a.obj");
+    EXPECT_FALSE(reloads());
+    write("parts/m.mtl", "newmtl m\nKd 0 1 0\nmap_Kd later.png\n");
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(color(), Vec3(0, 1, 0));
+    EXPECT_FALSE(reloads());
+    io::save_image(Image(3, 2, 3, PixelType::u8), folder_ / "later.png");
+    EXPECT_TRUE(reloads());
+    EXPECT_TRUE(session_.scene().get("a").snapshot()->materials.at(0).base_color_texture);
+    EXPECT_FALSE(reloads());
+}
+
 // What a person has done by hand stays, and undo goes back to what the file holds now.
 TEST_F(WatchedFiles, PosesAndLightsOfAPersonAreKept) {
     write("a.gltf", lit_triangle(5));
-    files_.open(folder_ / "a.gltf");
-    files_.watch(folder_ / "a.gltf", "a");
+    show_and_watch("a.gltf");
     ASSERT_EQ(session_.scene().light_names().size(), 1u);
     const std::string lamp = session_.scene().light_names()[0];
     const auto place = [&] { return session_.scene().get("a").T_parent_mesh().translation().eval(); };
@@ -119,8 +139,7 @@ TEST_F(WatchedFiles, PosesAndLightsOfAPersonAreKept) {
 TEST_F(WatchedFiles, WhatWasRemovedIsNotShownAgain) {
     const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     write("a.obj", triangle);
-    files_.open(folder_ / "a.obj");
-    files_.watch(folder_ / "a.obj", "a");
+    show_and_watch("a.obj");
     session_.scene().remove("a");
     write("a.obj", triangle + "f 3 2 1\n");
     EXPECT_FALSE(reloads());

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -14,7 +13,6 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/mesh_io.h"
-#include "easypbr/scene/material_table.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
@@ -33,31 +31,6 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
     std::string name = stem;
     for (int number = 2; scene.contains(name); ++number) name = fmt::format("{}-{}", stem, number);
     return name;
-}
-
-/// Images that a mesh and what hangs from it were textured with.
-void add_textures(const Mesh& mesh, std::set<fs::path>& files) {
-    const auto data = mesh.snapshot();
-    for (const Material& material : data->materials)
-        for (const MaterialTexture& use : material_textures())
-            if (const std::string& path = (material.*use.texture).path; !path.empty()) files.insert(path);
-    for (const Mesh& child : data->children) add_textures(child, files);
-}
-
-/// Files beside `path` that hold a part of it, and that it names: materials of OBJ, buffers of glTF.
-void add_parts(const fs::path& path, std::set<fs::path>& files) {
-    const std::string kind = extension_of(path);
-    const std::string part = kind == "obj" ? "mtl" : kind == "gltf" ? "bin" : "";
-    if (part.empty()) return;
-    constexpr size_t looked_at = 16 << 20;
-    std::string text(looked_at, '\0');
-    std::ifstream in(path, std::ios::binary);
-    in.read(text.data(), std::streamsize(text.size()));
-    text.resize(size_t(in.gcount()));
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(path.parent_path() / ".", ignored))
-        if (extension_of(entry.path()) == part && text.find(entry.path().filename().string()) != text.npos)
-            files.insert(entry.path());
 }
 
 /// The object and the nodes below it that are hidden themselves.
@@ -126,20 +99,18 @@ void SceneFiles::close(const std::string& name) {
         if (light.starts_with(name + "/")) scene.remove_light(light);
 }
 
-void SceneFiles::watch(const fs::path& path, const std::string& name) {
+void SceneFiles::watch(const fs::path& path, const std::string& name, const io::LoadedScene& loaded) {
     Watched file{path, name, {}};
-    note_files(file);
+    follow(file, loaded);
     watched_.push_back(std::move(file));
 }
 
-void SceneFiles::note_files(Watched& watched) const {
-    std::set<fs::path> files = {watched.path};
-    if (session_.scene().contains(watched.name)) add_textures(session_.scene().get(watched.name), files);
-    add_parts(watched.path, files);
+void SceneFiles::follow(Watched& watched, const io::LoadedScene& loaded) {
+    watched.times.clear();
     std::error_code gone;
-    for (const fs::path& file : files) {
+    for (const fs::path& file : loaded.files) {
         const auto time = fs::last_write_time(file, gone);
-        watched.times.try_emplace(file, gone ? fs::file_time_type::min() : time);
+        watched.times.emplace(file, gone ? fs::file_time_type::min() : time);
     }
 }
 
@@ -164,7 +135,7 @@ void SceneFiles::reload(Watched& file) {
     show(loaded, file.name);
     for (const auto& [light, value] : loaded.lights) edits_.reload_light(light_name(file.name, light), value);
     edits_.keep_chosen();
-    note_files(file);
+    follow(file, loaded);
     notifications_.add("Reloaded " + file.name);
 }
 

@@ -37,10 +37,10 @@ class SceneFiles {
     /// when it is not there.
     void close(const std::string& name);
 
-    /// Shows the file again under `name` whenever it, an image that textures it, or a file that it names for
-    /// its materials (MTL) or buffers (glTF) changes, while the scene has the name. What a person has changed
-    /// or removed by hand stays so, see Edits.
-    void watch(const std::filesystem::path& path, const std::string& name);
+    /// Shows the file again under `name` whenever it, or a file that was read with it (LoadedScene::files),
+    /// changes, while the scene has the name. `loaded` is what load_scene() gave for it. What a person has
+    /// changed or removed by hand stays so, see Edits.
+    void watch(const std::filesystem::path& path, const std::string& name, const io::LoadedScene& loaded);
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
     void advance(double seconds);
 
@@ -53,14 +53,14 @@ class SceneFiles {
     struct Watched {
         std::filesystem::path path;
         std::string name;
-        std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all its files
+        std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all that were read
     };
     /// The files that are shown, in the order of the scene.
     std::vector<std::filesystem::path> sources() const;
     /// What is seen and no settings hold, in words.
     std::vector<std::string> unsaved() const;
-    /// Adds the files that the watched one is made of now.
-    void note_files(Watched& watched) const;
+    /// Looks from now on at the files that were read.
+    static void follow(Watched& watched, const io::LoadedScene& loaded);
     void show(const io::LoadedScene& loaded, const std::string& name);
     void reload(Watched& file);
 

@@ -14,6 +14,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/folder.h"
 #include "easypbr/core/open_file.h"
+#include "easypbr/core/opened_files.h"
 
 namespace easypbr {
 namespace {
@@ -42,6 +43,7 @@ std::byte* allocate_pages(size_t size, std::string_view path) {
 
 /// Beneath the folder of a FolderScope where there is one.
 Descriptor open_input(const fs::path& path) {
+    if (OpenedFiles* const files = OpenedFilesScope::current()) files->add(path);
     const int flags = O_RDONLY | O_NONBLOCK;
     const Folder* const folder = FolderScope::current();
     if (!folder) return Descriptor(open_file(path.c_str(), flags));

@@ -38,7 +38,7 @@ class InputFile {
   public:
     /// Throws FileError when the file is missing, not readable, or no regular file: a folder, a pipe, a
     /// socket or a device, which could block for ever; or when it lies outside of the folder of the thread's
-    /// FolderScope. Never blocks.
+    /// FolderScope. Never blocks. An OpenedFilesScope notes it.
     explicit InputFile(fs::path path);
     /// Of a file that is open; `path` stands in messages. Throws FileError when it is no regular one.
     InputFile(Descriptor file, fs::path path);

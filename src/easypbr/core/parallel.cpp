@@ -17,6 +17,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/folder.h"
 #include "easypbr/core/interrupt.h"
+#include "easypbr/core/opened_files.h"
 #include "easypbr/core/variable.h"
 
 #ifdef EASYPBR_THREAD_SANITIZER
@@ -104,9 +105,11 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         if (count) body(0, count);
         return;
     }
-    const auto run = [&, folder = FolderScope::current()](size_t chunk) {
+    const auto run = [&, folder = FolderScope::current(),
+                      opened = OpenedFilesScope::current()](size_t chunk) {
         const OnThread here;
-        const FolderScope scope(folder);
+        const FolderScope beneath(folder);
+        const OpenedFilesScope noted(opened);
         check_interrupt();
         body(chunk * grain, std::min(count, (chunk + 1) * grain));
     };

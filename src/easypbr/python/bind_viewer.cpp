@@ -5,10 +5,12 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/output.h"
+#include "easypbr/app/scene_files.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/letter_case.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
@@ -263,7 +265,10 @@ void bind_window(ViewerClass& viewer) {
              })
         .def("watch",
              [](SharedViewer& self, const fs::path& path, const std::string& name) {
-                 self.run([&](Viewer& v) { v.live().drawing().files().watch(path, name); });
+                 self.run([&](Viewer& v) {
+                     const io::LoadOptions options = app::load_options(v.settings());
+                     v.live().drawing().files().watch(path, name, io::load_scene(path, options));
+                 });
              })
         .def("set_path",
              [](SharedViewer& self, const CameraPath& path) {

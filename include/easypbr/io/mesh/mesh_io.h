@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct LoadedScene {
     std::map<std::string, Camera> cameras;   ///< in world space (glTF)
     Animations animations = {};              ///< what moves the mesh and its children (glTF)
     std::vector<std::string> variants = {};  ///< names of material variants (glTF KHR_materials_variants)
+    /// Paths of the file and of those that were read with it, or are missing: MTL, buffers, images, labels. Not
+    /// those that assimp's process reads by itself.
+    std::set<std::filesystem::path> files = {};
 };
 
 struct LoadOptions {

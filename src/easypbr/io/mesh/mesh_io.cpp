@@ -11,6 +11,7 @@
 #include "easypbr/core/file_set.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
+#include "easypbr/core/opened_files.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
@@ -261,11 +262,12 @@ void show_unlit_exactly(Mesh& mesh) {
 }
 
 /// What every file takes that is read, of whatever format.
-void finish(LoadedScene& scene, const fs::path& path, const LoadOptions& options) {
+void finish(LoadedScene& scene, const fs::path& path, const LoadOptions& options, const OpenedFiles& files) {
     if (!options.variant.empty() && scene.variants.empty())
         log_warning(
             fmt::format("{} has no material variants: '{}' changes nothing", path.string(), options.variant));
     show_unlit_exactly(scene.mesh);
+    scene.files = files.paths();
 }
 
 LoadedScene load_content(const Source& source, const LoadOptions& options) {
@@ -274,8 +276,10 @@ LoadedScene load_content(const Source& source, const LoadOptions& options) {
         throw FormatError(fmt::format("{}: there is nothing to read", source.path.string()));
     const std::string format = options.format.empty() ? format_of_content(source.bytes) : format_of(options);
     if (!is_gltf(format) && !readers().contains(format)) fail_format(source.path, format);
+    OpenedFiles files;
+    const OpenedFilesScope noted(&files);
     LoadedScene scene = decode(source, format, options);
-    finish(scene, source.path, options);
+    finish(scene, source.path, options, files);
     return scene;
 }
 
@@ -283,8 +287,10 @@ LoadedScene load_content(const Source& source, const LoadOptions& options) {
 
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
     const MemoryScope memory(path.string(), limit_of(options));
+    OpenedFiles files;
+    const OpenedFilesScope noted(&files);
     LoadedScene scene = read_scene(path, options);
-    finish(scene, path, options);
+    finish(scene, path, options, files);
     return scene;
 }
 
