@@ -32,9 +32,9 @@ class WatchedFiles : public testing::Test {
         fs::last_write_time(folder_ / name, time_);
     }
     /// As the command line shows and watches a file.
-    void show_and_watch(const std::string& name) {
-        const io::LoadedScene loaded = io::load_scene(folder_ / name);
-        files_.watch(folder_ / name, files_.add(loaded, folder_ / name), loaded);
+    void show_and_watch(const std::string& name, const std::string& format = {}) {
+        const io::LoadedScene loaded = io::load_scene(folder_ / name, {.format = format});
+        files_.watch(folder_ / name, files_.add(loaded, folder_ / name), loaded, format);
     }
     Vec3 color() const { return session_.scene().get("a").snapshot()->materials.at(0).base_color; }
     bool reloads() {
@@ -104,6 +104,17 @@ TEST_F(WatchedFiles, PartsAreReadAgainWhateverTheirNames) {
     EXPECT_TRUE(reloads());
     EXPECT_TRUE(session_.scene().get("a").snapshot()->materials.at(0).base_color_texture);
     EXPECT_FALSE(reloads());
+}
+
+// The extension tells nothing.
+TEST_F(WatchedFiles, FilesAreReadAgainInTheirFormat) {
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    write("a.dat", triangle);
+    show_and_watch("a.dat", "obj");
+    write("a.dat", triangle + "f 3 2 1\n");
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(notifications_.list().back().text, "Reloaded a");
+    EXPECT_EQ(session_.scene().get("a").F().rows(), 2);
 }
 
 // What a person has done by hand stays, and undo goes back to what the file holds now.

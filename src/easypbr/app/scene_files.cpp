@@ -99,8 +99,9 @@ void SceneFiles::close(const std::string& name) {
         if (light.starts_with(name + "/")) scene.remove_light(light);
 }
 
-void SceneFiles::watch(const fs::path& path, const std::string& name, const io::LoadedScene& loaded) {
-    Watched file{path, name, {}};
+void SceneFiles::watch(const fs::path& path, const std::string& name, const io::LoadedScene& loaded,
+                       const std::string& format) {
+    Watched file{path, name, format, {}};
     follow(file, loaded);
     watched_.push_back(std::move(file));
 }
@@ -131,7 +132,7 @@ void SceneFiles::advance(double seconds) {
 }
 
 void SceneFiles::reload(Watched& file) {
-    const io::LoadedScene loaded = io::load_scene(file.path, load_options(session_.settings()));
+    const io::LoadedScene loaded = io::load_scene(file.path, load_options(session_.settings(), file.format));
     show(loaded, file.name);
     for (const auto& [light, value] : loaded.lights) edits_.reload_light(light_name(file.name, light), value);
     edits_.keep_chosen();

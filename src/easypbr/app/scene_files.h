@@ -38,9 +38,10 @@ class SceneFiles {
     void close(const std::string& name);
 
     /// Shows the file again under `name` whenever it, or a file that was read with it (LoadedScene::files),
-    /// changes, while the scene has the name. `loaded` is what load_scene() gave for it. What a person has
-    /// changed or removed by hand stays so, see Edits.
-    void watch(const std::filesystem::path& path, const std::string& name, const io::LoadedScene& loaded);
+    /// changes, while the scene has the name. `loaded` is what load_scene() gave for it, and `format` that of
+    /// its options. What a person has changed or removed by hand stays so, see Edits.
+    void watch(const std::filesystem::path& path, const std::string& name, const io::LoadedScene& loaded,
+               const std::string& format = {});
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
     void advance(double seconds);
 
@@ -53,6 +54,7 @@ class SceneFiles {
     struct Watched {
         std::filesystem::path path;
         std::string name;
+        std::string format;                                                      ///< as LoadOptions::format
         std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all that were read
     };
     /// The files that are shown, in the order of the scene.

@@ -87,7 +87,7 @@ int run_view(const ViewOptions& options) {
     show_files(shown, view.session(), [&](size_t i, const std::string& name, const io::LoadedScene& loaded) {
         if (!loaded.animations.empty()) view.player().add(name, loaded.animations, view.scene());
         if (options.watch && shown.files[i] != standard_input)
-            view.live().drawing().files().watch(shown.files[i], name, loaded);
+            view.live().drawing().files().watch(shown.files[i], name, loaded, shown.format);
     });
     if (!options.animation.empty()) play(view, unique_names(shown.files), options.animation);
     if (!options.path.empty()) view.live().drawing().path().editor.set(io::load_camera_path(options.path));
