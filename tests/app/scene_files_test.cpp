@@ -1,12 +1,14 @@
 // Files that are shown again when they, or what they are made of, change.
 #include "easypbr/app/scene_files.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <chrono>
 #include <fstream>
+#include <utility>
+#include <vector>
 
 #include "easypbr/app/clock.h"
 #include "easypbr/io/image/image_io.h"
@@ -53,17 +55,40 @@ class WatchedFiles : public testing::Test {
     SceneFiles files_{session_, player_, notifications_, edits_};
 };
 
-/// A triangle and a point light, as glTF; `intensity` in candela.
-std::string lit_triangle(int intensity) {
+using Lights = std::vector<std::pair<std::string, int>>;
+
+/// A triangle as glTF, with point lights by their names, of intensities in candela. An animation moves the
+/// first one from x = 0 to 1 in a second.
+std::string lit_triangle(const Lights& lights, bool is_animated = false) {
+    std::string all, nodes, roots = "0";
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const auto& [name, intensity] = lights[i];
+        all +=
+            fmt::format(R"({}{{"type":"point","name":"{}","intensity":{}}})", i ? "," : "", name, intensity);
+        nodes +=
+            fmt::format(R"(,{{"name":"{}","extensions":{{"KHR_lights_punctual":{{"light":{}}}}}}})", name, i);
+        roots += fmt::format(",{}", i + 1);
+    }
+    // The numbers 0, 1 are the times, and 0 0 0, 1 0 0 the places.
+    const char* const animation = R"(,"animations":[{"name":"swing",
+"samplers":[{"input":1,"output":2}],"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}]}])";
     return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
-"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","name":"lamp","intensity":)" +
-           std::to_string(intensity) + R"(}]}},
+"extensions":{"KHR_lights_punctual":{"lights":[)" +
+           all + R"(]}},
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
-"bufferViews":[{"buffer":0,"byteLength":36}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":8,"byteLength":8}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]},
+{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-"nodes":[{"mesh":0},{"name":"lamp","extensions":{"KHR_lights_punctual":{"light":0}}}],
-"scenes":[{"nodes":[0,1]}],"scene":0})";
+"nodes":[{"mesh":0})" +
+           nodes + R"(],"scenes":[{"nodes":[)" + roots + R"(]}],"scene":0)" + (is_animated ? animation : "") +
+           "}";
+}
+
+/// With one light, "lamp".
+std::string lit_triangle(int intensity) {
+    return lit_triangle({{"lamp", intensity}});
 }
 
 TEST_F(WatchedFiles, MaterialsAndTexturesAreReadAgain) {
@@ -145,6 +170,71 @@ TEST_F(WatchedFiles, PosesAndLightsOfAPersonAreKept) {
     edits_.redo();
     EXPECT_EQ(place(), Vec3d(1, 0, 0));
     EXPECT_TRUE(session_.scene().light_names().empty());
+}
+
+// Lights that the file no longer has go, but for one that a person has changed; undo leads to none.
+TEST_F(WatchedFiles, LightsThatTheFileLostAreRemoved) {
+    using Names = std::vector<std::string>;
+    Scene& scene = session_.scene();
+    write("a.gltf", lit_triangle({{"blue", 1}, {"green", 2}, {"red", 3}}));
+    show_and_watch("a.gltf");
+    scene.set_light("a/own", {});
+    edits_.note();
+    Light changed = scene.light("a/green");
+    changed.intensity = 20;
+    edits_.will_change_light("a/green");
+    scene.set_light("a/green", changed);
+    edits_.note();
+    write("a.gltf", lit_triangle({{"red", 3}}));
+    ASSERT_TRUE(reloads());
+    EXPECT_EQ(scene.light_names(), (Names{"a/green", "a/own", "a/red"})) << "blue is gone";
+    EXPECT_EQ(scene.light("a/green").intensity, 20);
+    edits_.undo();
+    EXPECT_EQ(scene.light_names(), (Names{"a/own", "a/red"}));
+    edits_.redo();
+    EXPECT_EQ(scene.light("a/green").intensity, 20);
+    write("a.gltf", lit_triangle(Lights{}));
+    ASSERT_TRUE(reloads());
+    EXPECT_EQ(scene.light_names(), (Names{"a/green", "a/own"}));
+}
+
+// A light that is the same in the file stays as the program has it.
+TEST_F(WatchedFiles, LightsOfTheProgramStayWhileTheFileHasTheSame) {
+    Scene& scene = session_.scene();
+    write("a.gltf", lit_triangle({{"blue", 1}, {"red", 3}}));
+    show_and_watch("a.gltf");
+    scene.remove_light("a/blue");
+    Light dimmed = scene.light("a/red");
+    dimmed.intensity = 0.5f;
+    scene.set_light("a/red", dimmed);
+    write("a.gltf", lit_triangle({{"blue", 1}, {"red", 3}}));
+    ASSERT_TRUE(reloads());
+    EXPECT_EQ(scene.light_names(), std::vector<std::string>{"a/red"});
+    EXPECT_EQ(scene.light("a/red").intensity, 0.5f);
+    write("a.gltf", lit_triangle({{"blue", 2}, {"red", 4}}));
+    ASSERT_TRUE(reloads());
+    ASSERT_EQ(scene.light_names(), (std::vector<std::string>{"a/blue", "a/red"}));
+    EXPECT_EQ(scene.light("a/blue").intensity, 2);
+    EXPECT_EQ(scene.light("a/red").intensity, 4);
+}
+
+TEST_F(WatchedFiles, AnimationsThatTheFileLostAreForgotten) {
+    write("a.gltf", lit_triangle({{"lamp", 5}}, true));
+    show_and_watch("a.gltf");
+    player_.add("own", {});
+    ASSERT_EQ(player_.names(), std::vector<std::string>{"a: swing"});
+    const auto x = [&] { return session_.scene().light("a/lamp").position.x(); };
+    player_.seek(0.5);
+    ASSERT_EQ(x(), 0.5);
+    write("a.gltf", lit_triangle(5));
+    ASSERT_TRUE(reloads());
+    EXPECT_TRUE(player_.empty());
+    EXPECT_FALSE(player_.has("a"));
+    EXPECT_TRUE(player_.has("own")) << "those of the program stay";
+    EXPECT_EQ(x(), 0) << "where the file has it";
+    write("a.gltf", lit_triangle({{"lamp", 5}}, true));
+    ASSERT_TRUE(reloads());
+    EXPECT_EQ(player_.names(), std::vector<std::string>{"a: swing"});
 }
 
 TEST_F(WatchedFiles, WhatWasRemovedIsNotShownAgain) {

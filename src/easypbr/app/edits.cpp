@@ -219,11 +219,10 @@ void Edits::will_change_light(const std::string& name) {
     touched_.insert(changed);
 }
 
-void Edits::reload_light(const std::string& name, const Light& light) {
+void Edits::reload_light(const std::string& name, const std::optional<Light>& light) {
     const Property property{name, PropertyKind::light};
-    if (const auto known = programs_.find(property); known != programs_.end())
-        known->second = std::optional(light);
-    if (!chosen_.contains(property) && !touched_.contains(property)) session_.scene().set_light(name, light);
+    if (const auto known = programs_.find(property); known != programs_.end()) known->second = light;
+    if (!chosen_.contains(property) && !touched_.contains(property)) Put{session_.scene(), property}(light);
 }
 
 void Edits::change_settings(const std::function<void(Settings&)>& change) {

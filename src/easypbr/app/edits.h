@@ -43,9 +43,9 @@ class Edits {
     void will_move(const std::string& object);
     /// Before a light of the scene is added, changed or removed.
     void will_change_light(const std::string& name);
-    /// Shows a light of a file that is read again. One that a person has changed or removed stays so; undo()
-    /// goes back to that of the file.
-    void reload_light(const std::string& name, const Light& light);
+    /// Shows a light of a file that is read again, or removes one that the file no longer has. One that a
+    /// person has changed or removed stays so; undo() goes back to what the file has.
+    void reload_light(const std::string& name, const std::optional<Light>& light);
 
     /// A change of settings by the program: undo() and redo() leave it. Throws what the change throws.
     void change_settings(const std::function<void(Settings&)>& change);

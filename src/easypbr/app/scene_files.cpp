@@ -101,12 +101,14 @@ void SceneFiles::close(const std::string& name) {
 
 void SceneFiles::watch(const fs::path& path, const std::string& name, const io::LoadedScene& loaded,
                        const std::string& format) {
-    Watched file{path, name, format, {}};
+    Watched file{path, name, format, {}, {}};
     follow(file, loaded);
     watched_.push_back(std::move(file));
 }
 
 void SceneFiles::follow(Watched& watched, const io::LoadedScene& loaded) {
+    watched.lights = loaded.lights;
+    watched.is_animated = !loaded.animations.empty();
     watched.times.clear();
     std::error_code gone;
     for (const fs::path& file : loaded.files) {
@@ -131,10 +133,25 @@ void SceneFiles::advance(double seconds) {
         }
 }
 
+void SceneFiles::change_lights(const Watched& from, const io::LoadedScene& to) {
+    const std::vector<std::string> shown = session_.scene().light_names();
+    for (const auto& [light, value] : to.lights) {
+        const std::string name = light_name(from.name, light);
+        const auto before = from.lights.find(light);
+        const bool is_same = before != from.lights.end() && before->second == value;
+        // An animation may have left it elsewhere.
+        const bool is_moved = from.is_animated && std::ranges::find(shown, name) != shown.end();
+        if (!is_same || is_moved) edits_.reload_light(name, value);
+    }
+    for (const auto& [light, value] : from.lights)
+        if (!to.lights.contains(light)) edits_.reload_light(light_name(from.name, light), std::nullopt);
+}
+
 void SceneFiles::reload(Watched& file) {
     const io::LoadedScene loaded = io::load_scene(file.path, load_options(session_.settings(), file.format));
     show(loaded, file.name);
-    for (const auto& [light, value] : loaded.lights) edits_.reload_light(light_name(file.name, light), value);
+    if (file.is_animated && loaded.animations.empty()) player_.remove(file.name);
+    change_lights(file, loaded);
     edits_.keep_chosen();
     follow(file, loaded);
     notifications_.add("Reloaded " + file.name);

@@ -10,6 +10,7 @@
 #include "easypbr/app/edits.h"
 #include "easypbr/app/notifications.h"
 #include "easypbr/app/session.h"
+#include "easypbr/scene/light.h"
 
 namespace easypbr::io {
 struct LoadedScene;
@@ -39,7 +40,8 @@ class SceneFiles {
 
     /// Shows the file again under `name` whenever it, or a file that was read with it (LoadedScene::files),
     /// changes, while the scene has the name. `loaded` is what load_scene() gave for it, and `format` that of
-    /// its options. What a person has changed or removed by hand stays so, see Edits.
+    /// its options. What a person has changed or removed by hand stays so, see Edits; a light that is the
+    /// same in the file stays as the program has it.
     void watch(const std::filesystem::path& path, const std::string& name, const io::LoadedScene& loaded,
                const std::string& format = {});
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
@@ -56,6 +58,8 @@ class SceneFiles {
         std::string name;
         std::string format;                                                      ///< as LoadOptions::format
         std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all that were read
+        std::map<std::string, Light> lights;  ///< of the file, by its own names
+        bool is_animated = false;
     };
     /// The files that are shown, in the order of the scene.
     std::vector<std::filesystem::path> sources() const;
@@ -64,6 +68,8 @@ class SceneFiles {
     /// Looks from now on at the files that were read.
     static void follow(Watched& watched, const io::LoadedScene& loaded);
     void show(const io::LoadedScene& loaded, const std::string& name);
+    /// From the lights that the file had to those that it has now.
+    void change_lights(const Watched& from, const io::LoadedScene& to);
     void reload(Watched& file);
 
     Session& session_;
