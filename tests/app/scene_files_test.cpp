@@ -7,10 +7,13 @@
 
 #include <chrono>
 #include <fstream>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "easypbr/app/clock.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/settings_io.h"
@@ -140,6 +143,62 @@ TEST_F(WatchedFiles, FilesAreReadAgainInTheirFormat) {
     EXPECT_TRUE(reloads());
     EXPECT_EQ(notifications_.list().back().text, "Reloaded a");
     EXPECT_EQ(session_.scene().get("a").F().rows(), 2);
+}
+
+// Each file is replaced by another one after it was opened and before its reading ends: it is read once more,
+// and no more than once. The log is written between.
+TEST_F(WatchedFiles, FilesThatAreReplacedWhileTheyAreReadAreReadAgain) {
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\n";
+    const auto material = [](const std::string& color) {
+        return "newmtl m\nKd " + color + "\nrefl warning\n";
+    };
+    bool replaces = true;
+    set_log_sink([&](LogLevel, std::string_view) {
+        if (!std::exchange(replaces, false)) return;
+        write("a.obj", "mtllib m.mtl\n" + vertices + "f 1 2 3\nf 3 2 1\n");
+        write("m.mtl", material("0 1 0"));
+    });
+    write("m.mtl", material("1 0 0"));
+    write("a.obj", "mtllib m.mtl\n" + vertices + "f 1 2 3\n");
+    show_and_watch("a.obj");
+    ASSERT_FALSE(replaces);
+    ASSERT_EQ(session_.scene().get("a").F().rows(), 1);
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(session_.scene().get("a").F().rows(), 2);
+    EXPECT_EQ(color(), Vec3(0, 1, 0));
+    EXPECT_FALSE(reloads());
+    // The same while a changed file and its new part are read again.
+    write("n.mtl", material("0 0 1"));
+    write("a.obj", "mtllib n.mtl\n" + vertices + "f 1 2 3\n");
+    set_log_sink([&](LogLevel, std::string_view) {
+        if (!std::exchange(replaces, true)) write("n.mtl", material("1 1 0"));
+    });
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(color(), Vec3(0, 0, 1));
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(color(), Vec3(1, 1, 0));
+    EXPECT_FALSE(reloads());
+    set_log_sink({});
+}
+
+// A file may be written before what it names.
+TEST_F(WatchedFiles, WhatAFileLacksMayBeWrittenLater) {
+    const auto triangle = [](const std::string& buffer) {
+        return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":")" + buffer +
+               R"("}],"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]})";
+    };
+    write("one.bin", std::string(36, '\0'));
+    write("a.gltf", triangle("one.bin"));
+    show_and_watch("a.gltf");
+    write("a.gltf", triangle("two.bin"));
+    EXPECT_TRUE(reloads());
+    EXPECT_NE(notifications_.list().back().text, "Reloaded a");
+    EXPECT_FALSE(reloads());
+    write("two.bin", std::string(36, '\0'));
+    EXPECT_TRUE(reloads());
+    EXPECT_EQ(notifications_.list().back().text, "Reloaded a");
 }
 
 // What a person has done by hand stays, and undo goes back to what the file holds now.

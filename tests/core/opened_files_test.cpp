@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <set>
 #include <string>
 
 #include "easypbr/core/error.h"
@@ -10,6 +12,12 @@
 
 namespace easypbr::opened_files_test {
 namespace {
+
+std::set<fs::path> paths_of(const OpenedFiles& files) {
+    std::set<fs::path> paths;
+    for (const auto& [path, time] : files.times()) paths.insert(path);
+    return paths;
+}
 
 class OpenedFilesTest : public testing::Test {
   protected:
@@ -37,8 +45,22 @@ TEST_F(OpenedFilesTest, AreThoseOfTheScopes) {
         const OpenedFilesScope nobody(nullptr);
         check_readable(before);
     }
-    EXPECT_EQ(some.paths(), (std::set<fs::path>{inner, folder_ / "none"}));
-    EXPECT_EQ(all.paths(), (std::set<fs::path>{inner, folder_ / "none", outer}));
+    EXPECT_EQ(paths_of(some), (std::set<fs::path>{inner, folder_ / "none"}));
+    EXPECT_EQ(paths_of(all), (std::set<fs::path>{inner, folder_ / "none", outer}));
+}
+
+// The first time counts: what was read then may be old.
+TEST_F(OpenedFilesTest, HaveTheTimeFromBeforeTheyWereOpened) {
+    const fs::path file = made("file");
+    const auto time = fs::last_write_time(file);
+    OpenedFiles opened;
+    const OpenedFilesScope noted(&opened);
+    check_readable(file);
+    fs::last_write_time(file, time + std::chrono::seconds(3));
+    check_readable(file);
+    EXPECT_THROW(check_readable(folder_ / "none"), FileError);
+    EXPECT_EQ(opened.times().at(file), time);
+    EXPECT_EQ(opened.times().at(folder_ / "none"), fs::file_time_type::min());
 }
 
 TEST_F(OpenedFilesTest, AreThoseOfLoopsOnAllCores) {
@@ -48,7 +70,7 @@ TEST_F(OpenedFilesTest, AreThoseOfLoopsOnAllCores) {
     OpenedFiles opened;
     const OpenedFilesScope noted(&opened);
     parallel_for(count, 1, [&](size_t i) { check_readable(folder_ / std::to_string(i)); });
-    EXPECT_EQ(opened.paths(), files);
+    EXPECT_EQ(paths_of(opened), files);
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // LoadedScene::files: the file and those that are read with it, in the words of mesh_io.h.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "io/bytes.h"
@@ -20,7 +23,7 @@ constexpr const char* triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 /// What was read, relative to the folder.
 std::set<std::string> read_files(const TemporaryFolder& folder, const std::string& name) {
     std::set<std::string> names;
-    for (const fs::path& path : io::load_scene(folder / name).files)
+    for (const auto& [path, time] : io::load_scene(folder / name).files)
         names.insert(path.lexically_relative(folder.path()).string());
     return names;
 }
@@ -90,7 +93,25 @@ TEST(OpenedParts, OfMemoryAreWhatLiesBesideTheName) {
     write_file(folder / "m.mtl", "newmtl m\n");
     const std::string text = std::string("mtllib m.mtl\n") + triangle;
     const io::LoadedScene loaded = io::load_scene(as_span(text), folder / "a.obj", {.format = "obj"});
-    EXPECT_EQ(loaded.files, std::set<fs::path>{folder / "m.mtl"});
+    ASSERT_EQ(loaded.files.size(), 1u);
+    EXPECT_EQ(loaded.files.begin()->first, folder / "m.mtl");
+}
+
+// The log is written while the materials are read, which is when they are replaced.
+TEST(OpenedParts, HaveTheirTimesFromBeforeTheyWereRead) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl", "newmtl m\nmap_Kd none.png\nunknown\nrefl x\n");
+    write_file(folder / "a.obj", std::string("mtllib m.mtl\n") + triangle);
+    const auto before = fs::last_write_time(folder / "m.mtl");
+    set_log_sink([&](LogLevel, std::string_view) {
+        fs::last_write_time(folder / "m.mtl", before + std::chrono::seconds(5));
+    });
+    const io::LoadedScene loaded = io::load_scene(folder / "a.obj");
+    set_log_sink({});
+    ASSERT_NE(fs::last_write_time(folder / "m.mtl"), before);
+    EXPECT_EQ(loaded.files.at(folder / "m.mtl"), before);
+    EXPECT_EQ(loaded.files.at(folder / "a.obj"), fs::last_write_time(folder / "a.obj"));
+    EXPECT_EQ(loaded.files.at(folder / "none.png"), fs::file_time_type::min());
 }
 
 }  // namespace

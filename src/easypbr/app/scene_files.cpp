@@ -12,6 +12,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/opened_files.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/settings.h"
 
@@ -109,12 +110,7 @@ void SceneFiles::watch(const fs::path& path, const std::string& name, const io::
 void SceneFiles::follow(Watched& watched, const io::LoadedScene& loaded) {
     watched.lights = loaded.lights;
     watched.is_animated = !loaded.animations.empty();
-    watched.times.clear();
-    std::error_code gone;
-    for (const fs::path& file : loaded.files) {
-        const auto time = fs::last_write_time(file, gone);
-        watched.times.emplace(file, gone ? fs::file_time_type::min() : time);
-    }
+    watched.times = loaded.files;
 }
 
 void SceneFiles::advance(double seconds) {
@@ -147,8 +143,20 @@ void SceneFiles::change_lights(const Watched& from, const io::LoadedScene& to) {
         if (!to.lights.contains(light)) edits_.reload_light(light_name(from.name, light), std::nullopt);
 }
 
+io::LoadedScene SceneFiles::read_again(Watched& file) {
+    OpenedFiles opened;
+    const OpenedFilesScope noted(&opened);
+    try {
+        return io::load_scene(file.path, load_options(session_.settings(), file.format));
+    } catch (const Error&) {
+        // What it lacks may be written later.
+        for (const auto& [path, time] : opened.times()) file.times.insert_or_assign(path, time);
+        throw;
+    }
+}
+
 void SceneFiles::reload(Watched& file) {
-    const io::LoadedScene loaded = io::load_scene(file.path, load_options(session_.settings(), file.format));
+    const io::LoadedScene loaded = read_again(file);
     show(loaded, file.name);
     if (file.is_animated && loaded.animations.empty()) player_.remove(file.name);
     change_lights(file, loaded);

@@ -39,9 +39,9 @@ class SceneFiles {
     void close(const std::string& name);
 
     /// Shows the file again under `name` whenever it, or a file that was read with it (LoadedScene::files),
-    /// changes, while the scene has the name. `loaded` is what load_scene() gave for it, and `format` that of
-    /// its options. What a person has changed or removed by hand stays so, see Edits; a light that is the
-    /// same in the file stays as the program has it.
+    /// changes after it was read, while the scene has the name. `loaded` is what load_scene() gave for it,
+    /// and `format` that of its options. What a person has changed or removed by hand stays so, see Edits; a
+    /// light that is the same in the file stays as the program has it.
     void watch(const std::filesystem::path& path, const std::string& name, const io::LoadedScene& loaded,
                const std::string& format = {});
     /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
@@ -56,8 +56,9 @@ class SceneFiles {
     struct Watched {
         std::filesystem::path path;
         std::string name;
-        std::string format;                                                      ///< as LoadOptions::format
-        std::map<std::filesystem::path, std::filesystem::file_time_type> times;  ///< of all that were read
+        std::string format;  ///< as LoadOptions::format
+        std::map<std::filesystem::path, std::filesystem::file_time_type>
+            times;                            ///< of all that were read, when they were
         std::map<std::string, Light> lights;  ///< of the file, by its own names
         bool is_animated = false;
     };
@@ -70,6 +71,8 @@ class SceneFiles {
     void show(const io::LoadedScene& loaded, const std::string& name);
     /// From the lights that the file had to those that it has now.
     void change_lights(const Watched& from, const io::LoadedScene& to);
+    /// Looks at the files that it names even if they cannot be read. Throws as load_scene().
+    io::LoadedScene read_again(Watched& file);
     void reload(Watched& file);
 
     Session& session_;

@@ -12,9 +12,15 @@ thread_local OpenedFiles* innermost_files = nullptr;
 OpenedFiles::OpenedFiles() : outer_(OpenedFilesScope::current()) {}
 
 void OpenedFiles::add(const fs::path& path) {
-    if (outer_) outer_->add(path);
+    std::error_code missing;
+    const auto time = fs::last_write_time(path, missing);
+    add(path, missing ? fs::file_time_type::min() : time);
+}
+
+void OpenedFiles::add(const fs::path& path, fs::file_time_type time) {
+    if (outer_) outer_->add(path, time);
     const std::lock_guard lock(mutex_);
-    paths_.insert(path);
+    times_.try_emplace(path, time);
 }
 
 OpenedFilesScope::OpenedFilesScope(OpenedFiles* files) : outer_(std::exchange(innermost_files, files)) {}

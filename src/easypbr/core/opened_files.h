@@ -1,30 +1,36 @@
-// Which files were opened while something was read.
+// Which files were opened while something was read, and how old they were.
 #pragma once
 
+#include <map>
 #include <mutex>
-#include <set>
 
 #include "easypbr/core/file.h"
 
 namespace easypbr {
 
-/// Paths as they were given to InputFile, those of files that could not be opened among them.
+/// Files by the paths that were given to InputFile, those that could not be opened among them.
 class OpenedFiles {
   public:
+    /// When each was changed last, as seen before it was first opened: one that is replaced while it is read
+    /// has a later time afterwards. Of a file that is missing the least time.
+    using Times = std::map<fs::path, fs::file_time_type>;
+
     /// What is noted here is noted in those of the scope around it as well.
     OpenedFiles();
     OpenedFiles(const OpenedFiles&) = delete;
     OpenedFiles& operator=(const OpenedFiles&) = delete;
 
-    /// Thread-safe.
+    /// Before the file is opened. Thread-safe.
     void add(const fs::path& path);
     /// When all has been read.
-    const std::set<fs::path>& paths() const { return paths_; }
+    const Times& times() const { return times_; }
 
   private:
+    void add(const fs::path& path, fs::file_time_type time);
+
     OpenedFiles* outer_;
     std::mutex mutex_;
-    std::set<fs::path> paths_;
+    Times times_;
 };
 
 /// What InputFile opens in this thread while the object lives, and in the loops that it runs on all cores, is

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,8 +24,9 @@ struct LoadedScene {
     Animations animations = {};              ///< what moves the mesh and its children (glTF)
     std::vector<std::string> variants = {};  ///< names of material variants (glTF KHR_materials_variants)
     /// Paths of the file and of those that were read with it, or are missing: MTL, buffers, images, labels. Not
-    /// those that assimp's process reads by itself.
-    std::set<std::filesystem::path> files = {};
+    /// those that assimp's process reads by itself. With the time of the last change of each, as it was before
+    /// the file was opened; the least time of one that is missing.
+    std::map<std::filesystem::path, std::filesystem::file_time_type> files = {};
 };
 
 struct LoadOptions {

@@ -267,7 +267,7 @@ void finish(LoadedScene& scene, const fs::path& path, const LoadOptions& options
         log_warning(
             fmt::format("{} has no material variants: '{}' changes nothing", path.string(), options.variant));
     show_unlit_exactly(scene.mesh);
-    scene.files = files.paths();
+    scene.files = files.times();
 }
 
 LoadedScene load_content(const Source& source, const LoadOptions& options) {
