@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -224,6 +225,29 @@ TEST_F(SessionFiles, NewEnvironmentIsInferredAnew) {
     EXPECT_FALSE(resolved.settings.lights.key.enabled);
     // A constant environment of 4 gives a white diffuse object a radiance of 4: it is brought to 1.
     EXPECT_NEAR(resolved.exposure, 0.25f, 0.01f);
+}
+
+// The light of a constant environment is its value: the automatic exposure is the reciprocal, as above.
+TEST_F(SessionFiles, AnEnvironmentThatChangesIsReadAgain) {
+    const fs::path file = folder_ / "env.exr";
+    auto time = fs::file_time_type::clock::now();
+    const auto write = [&](float value) {
+        io::save_image(constant_image(Vec3(value, value, value)), file);
+        fs::last_write_time(file, time += std::chrono::seconds(1));
+    };
+    write(4);
+    Session session = small_session();
+    session.settings().environment.file = file.string();
+    EXPECT_NEAR(session.resolve().exposure, 0.25f, 0.01f);
+    const uint64_t version = session.picture_version();
+    EXPECT_EQ(session.picture_version(), version);
+    write(2);
+    EXPECT_GT(session.picture_version(), version);
+    EXPECT_NEAR(session.resolve().exposure, 0.5f, 0.02f);
+    fs::remove(file);
+    EXPECT_NEAR(session.resolve().exposure, 0.5f, 0.02f) << "missing while it is replaced";
+    write(1);
+    EXPECT_NEAR(session.resolve().exposure, 1.0f, 0.04f);
 }
 
 TEST_F(SessionFiles, AnEmptySceneLatchesNothing) {

@@ -56,11 +56,19 @@ void SettingsFiles::load(const Settings& settings) {
     }
     if (has_background)
         images_.background = background_ ? background_ : image_files_.get(settings.background.image);
-    if (settings.environment.file != environment_file_) {
-        const std::filesystem::path file = settings.environment.file;
-        environment_ = file.empty() ? Environment() : Environment(file);
-        environment_file_ = settings.environment.file;
+    if (settings.environment.file.empty()) {
+        environment_ = Environment();
+        environment_file_.clear();
+    } else if (!is_environment_read(settings.environment.file)) {
+        load_environment(settings.environment.file);
     }
+}
+
+bool SettingsFiles::is_environment_read(const std::string& file) const {
+    if (file != environment_file_) return false;
+    std::error_code gone;  // A file that is being replaced may be missing for a moment.
+    const auto time = std::filesystem::last_write_time(file, gone);
+    return gone || time == environment_time_;
 }
 
 void SettingsFiles::load_shaders(const Settings& settings, const SceneSnapshot& scene) {
@@ -73,7 +81,10 @@ void SettingsFiles::load_shaders(const Settings& settings, const SceneSnapshot& 
 }
 
 void SettingsFiles::load_environment(const std::filesystem::path& path) {
+    std::error_code ignored;  // A file that is missing is reported by Environment.
+    const auto time = std::filesystem::last_write_time(path, ignored);
     environment_ = Environment(path);
+    environment_time_ = time;
     environment_file_ = path.string();
 }
 

@@ -50,8 +50,8 @@ class ShaderTexts {
 
 class SettingsFiles {
   public:
-    /// Images that the settings name, and the environment. Throws FileError, FormatError; ArgumentError when
-    /// the background is an image, and none is named or given.
+    /// Images that the settings name, and the environment, where they are new or have changed. Throws
+    /// FileError, FormatError; ArgumentError when the background is an image, and none is named or given.
     void load(const Settings& settings);
     /// The shaders of settings and materials, after load(). Throws FileError.
     void load_shaders(const Settings& settings, const SceneSnapshot& scene);
@@ -68,10 +68,14 @@ class SettingsFiles {
     const Environment& environment() const { return environment_; }
 
   private:
+    /// As it is now.
+    bool is_environment_read(const std::string& file) const;
+
     ImageFiles image_files_;
     ShaderTexts shader_texts_;
     render::SettingsImages images_;
     std::string environment_file_;
+    std::filesystem::file_time_type environment_time_;
     Environment environment_;
     std::shared_ptr<const Image> background_;  ///< given as it is
 };
