@@ -158,9 +158,9 @@ TEST(GltfAnimation, SkinsFollowTheirJointsWithoutAnAnimation) {
     const LoadedScene scene = load(file);
     EXPECT_TRUE(scene.animations.empty());
     const Mesh mesh = scene.mesh.children()[0];
-    EXPECT_EQ(mesh.T_world_mesh().translation(), Vec3d(100, 0, 0));
-    // In the world (0, 5, 0), (1, 5, 0) and (0, 6, 0). 100 is exact in float; so is what is taken from it.
-    EXPECT_EQ(mesh.V(), (Array3f::Dense{{-100, 5, 0}, {-99, 5, 0}, {-100, 6, 0}}));
+    // In the world (0, 5, 0), (1, 5, 0) and (0, 6, 0): small integers are exact.
+    const Eigen::Matrix3d V = mesh.V().transpose().cast<double>();
+    EXPECT_EQ((mesh.T_world_mesh() * V), (Eigen::Matrix3d{{0, 1, 0}, {5, 5, 6}, {0, 0, 0}}));
     file.json["skins"] = {{{"joints", {7}}}};
     EXPECT_NE(error_of(file).find("nodes[7]"), std::string::npos) << error_of(file);
 }

@@ -84,6 +84,20 @@ AnimationRig skinned(const Mesh& mesh) {
     return rig;
 }
 
+/// Where the mesh's vertices are in the world, one in each row.
+Array3f::Dense world_V(const Mesh& mesh) {
+    const Eigen::Affine3d T = mesh.T_world_mesh();
+    return (T * mesh.V().cast<double>().transpose().eval()).transpose().cast<float>();
+}
+
+/// Of the first triangle, as its winding tells, in the world.
+Vec3d world_normal(const Mesh& mesh) {
+    const Eigen::Matrix3d V = world_V(mesh).topRows<3>().cast<double>();
+    const Vec3d n = (V.row(1) - V.row(0)).cross(V.row(2) - V.row(0)).transpose();
+    // A mirrored pose exchanges the sides of faces.
+    return mesh.T_world_mesh().linear().determinant() < 0 ? Vec3d(-n) : n;
+}
+
 TEST(Animations, SkinsFollowTheirJoints) {
     Mesh mesh = triangle();
     Animations animations(skinned(mesh));
@@ -119,7 +133,86 @@ TEST(Animations, AtRestSkinsFollowTheirJoints) {
     animations.put_at_rest();
     animations.put_at_rest();
     // The joints are 3 above where the mesh was bound to them, in the world; its own node adds nothing.
-    EXPECT_EQ(mesh.V(), (Array3f::Dense{{-7, 0, 3}, {-6, 0, 3}, {-7, 1, 3}}));
+    EXPECT_EQ(world_V(mesh), (Array3f::Dense{{0, 0, 3}, {1, 0, 3}, {0, 1, 3}}));
+}
+
+// glTF 2.0, section 3.7.3.3: only the joints' transforms apply. The sign of the node's determinant would tell
+// the side of faces that is outside.
+TEST(Animations, ASkinIsNotMirroredByItsNode) {
+    for (const bool above : {false, true}) {
+        SCOPED_TRACE(above);
+        Mesh parent, mesh = triangle();
+        parent.add_child(mesh);
+        AnimationRig rig = skinned(mesh);
+        rig.nodes.resize(4);
+        rig.nodes[0].parent = 3;
+        rig.nodes[3].mesh = parent;
+        rig.nodes[above ? 3 : 0].scale = Vec3d(-1, 1, 1);
+        parent.set_T_parent_mesh(Eigen::Affine3d(Eigen::Scaling(rig.nodes[3].scale)));
+        Animations animations(std::move(rig));
+        animations.put_at_rest();
+        EXPECT_EQ(world_V(mesh), triangle().V());
+        EXPECT_GT(world_normal(mesh).z(), 0);
+        animations.apply(0, 0.5);
+        EXPECT_EQ(world_V(mesh), (Array3f::Dense{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}}));
+        EXPECT_GT(world_normal(mesh).z(), 0);
+    }
+}
+
+// Joints that mirror what follows them mirror its faces with it: their outside stays outside.
+TEST(Animations, ASkinIsMirroredWithItsJoints) {
+    MeshData data = *triangle().snapshot();
+    data.N = Array3f::Dense(Vec3(0, 0, 1).transpose().replicate(3, 1));
+    Mesh mesh(data);
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].deformation.N = data.N;
+    rig.nodes[1].scale = Vec3d(-1, 1, 1);
+    Animations(std::move(rig)).apply(0, 0);
+    EXPECT_EQ(world_V(mesh), (Array3f::Dense{{0, 0, 0}, {-1, 0, 0}, {0, 1, 0}}));
+    EXPECT_GT(world_normal(mesh).z(), 0);
+    // Poses turn normals by the inverse transpose.
+    EXPECT_GT(
+        (mesh.T_world_mesh().linear().inverse().transpose() * mesh.N().row(0).transpose().cast<double>()).z(),
+        0);
+}
+
+TEST(Animations, ASkinMovesWithItsJointsNotWithItsNode) {
+    Mesh mesh = triangle();
+    AnimationRig rig = skinned(mesh);
+    AnimationChannel slide = channel(Interpolation::linear, {0, 1}, ArrayXf::Dense{{0, 0, 0}, {2, 0, 0}});
+    slide.node = 0;
+    rig.animations[0].channels = {slide};
+    slide.node = 1;
+    rig.animations.push_back({"walk", 1, {slide}});
+    const Animations animations(std::move(rig));
+    EXPECT_EQ(animations.motion(0, 0.25, 0.75)[0].second.matrix(), Eigen::Matrix4d::Identity());
+    // All joints hang from the one that goes 2 units a second.
+    const MovedMeshes walked = animations.motion(1, 0.25, 0.75);
+    EXPECT_EQ(walked[0].second.translation(), Vec3d(-1, 0, 0));
+}
+
+// What hangs from a skinned mesh has its place by the nodes' poses.
+TEST(Animations, ChildrenOfASkinGoWithItsNode) {
+    Mesh mesh = triangle(), child = triangle();
+    mesh.add_child(child);
+    AnimationRig rig = skinned(mesh);
+    rig.nodes.resize(4);
+    rig.nodes[0].translation = Vec3d(7, 0, 0);
+    rig.nodes[0].scale = Vec3d(-1, 1, 1);
+    rig.nodes[1].translation = Vec3d(0, 0, 3);
+    rig.nodes[3].parent = 0;
+    rig.nodes[3].translation = Vec3d(2, 0, 0);
+    rig.nodes[3].mesh = child;
+    Animations animations(std::move(rig));
+    for (const bool is_at_rest : {true, false}) {
+        if (is_at_rest) {
+            animations.put_at_rest();
+        } else {
+            animations.apply(0, 0.5);
+        }
+        EXPECT_EQ(child.T_world_mesh().translation(), Vec3d(5, 0, 0));
+        EXPECT_LT(child.T_world_mesh().linear().determinant(), 0);
+    }
 }
 
 TEST(Animations, AtRestNothingElseIsTouched) {

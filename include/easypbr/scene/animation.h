@@ -133,15 +133,16 @@ class Animations {
     double time_in(size_t index, double time_s, bool loop = true) const;
 
     /// Puts the meshes where they are at a time of an animation: poses and visibility of nodes, vertices and
-    /// normals of what has skins or morph targets, and materials. With `loop` the time goes around, and a
-    /// whole number of durations after the beginning is the end; else the animation rests at its ends. What
-    /// the animation leaves alone is at rest. Throws NameError for an unknown index, ArgumentError for a time
-    /// that is not finite.
+    /// normals of what has skins or morph targets, and materials. A mesh that follows joints has the pose of
+    /// the node that all of them hang from, without its scale, whatever its own node's is (glTF 2.0, section
+    /// 3.7.3.3). With `loop` the time goes around, and a whole number of durations after the beginning is the
+    /// end; else the animation rests at its ends. What the animation leaves alone is at rest. Throws NameError
+    /// for an unknown index, ArgumentError for a time that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
     /// Puts the vertices and normals where they are without an animation: by the weights at rest, and where
-    /// the joints are at rest. Meshes without joints whose weights at rest are 0 keep their arrays, and
-    /// meshes their poses, but for skins whose node is scaled to nothing.
+    /// the joints are at rest. Meshes without joints whose weights at rest are 0 keep their arrays. Meshes
+    /// that follow joints take the pose of their skin, as in apply(); the others keep theirs, in the world.
     void put_at_rest();
 
     /// The lights that the animations of the file move, change or hide, at a time of one of them, by their
@@ -179,12 +180,13 @@ class Animations {
     template <class Value>
     std::map<std::string, Value> placed(const std::vector<AnimatedItem<Value>>& items,
                                         AnimatedProperty property, size_t index, const Moment& moment) const;
-    /// A mesh that is where its joints are, whose node is scaled to nothing: it takes its parent's pose, as
-    /// nothing else hangs from it.
-    bool is_without_own_pose(size_t node, const Pose& pose) const;
-    void put_pose(size_t node, const Pose& pose);
-    void put_vertices(size_t node, const std::vector<Pose>& poses,
-                      const std::vector<Eigen::Affine3d>& T_world_nodes);
+    /// Where nodes and the meshes that are drawn for them are. They differ for what follows joints.
+    struct Places;
+    Places places(const std::vector<Pose>& poses) const;
+    /// The pose in the world of the meshes that follow the joints of a skin.
+    Eigen::Affine3d pose_of_skin(int skin, const std::vector<Eigen::Affine3d>& T_world_nodes) const;
+    /// Whether the pose of a node's mesh depends on joints: it follows them, or hangs from what does.
+    bool is_placed_by_joints(size_t node) const;
     void deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
     void put_materials(const Animation& animation, const Moment& moment);
@@ -193,7 +195,8 @@ class Animations {
     std::vector<size_t> order_;  ///< parents before children
     /// Copies share it, as they share the meshes.
     std::shared_ptr<PutMaterials> put_materials_;
-    std::vector<bool> moved_;  ///< nodes that channels name
+    std::vector<bool> moved_;      ///< nodes that channels name
+    std::vector<int> skin_nodes_;  ///< for each skin the node that all joints are or hang from; -1: none
 };
 
 }  // namespace easypbr

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -120,6 +121,25 @@ bool follows_joints(const AnimationNode& node) {
     return node.skin >= 0 && !node.deformation.joints.empty();
 }
 
+/// The node that all joints of a skin are or hang from, the nearest to them; -1: there is none.
+int common_node(const Skin& skin, const std::vector<AnimationNode>& nodes) {
+    int common = skin.joints.empty() ? -1 : skin.joints[0];
+    for (const int joint : skin.joints) {
+        std::vector<int> path;
+        for (int node = joint; node >= 0; node = nodes[size_t(node)].parent) path.push_back(node);
+        while (common >= 0 && std::ranges::find(path, common) == path.end())
+            common = nodes[size_t(common)].parent;
+    }
+    return common;
+}
+
+/// The nearest matrix of unit axes at right angles, mirrored where M is.
+Mat3d without_stretch(const Mat3d& M) {
+    if (!M.allFinite()) return Mat3d::Identity();  // of a file with scales beyond all numbers
+    const Eigen::JacobiSVD<Mat3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    return svd.matrixU() * svd.matrixV().transpose();
+}
+
 void show(Mesh& mesh, bool visible) {
     Style style = mesh.style();
     if (style.visible.value() == visible) return;
@@ -145,6 +165,10 @@ struct Animations::PutMaterials {
 struct Animations::Moment : ChannelTimes {
     explicit Moment(double time_s) : Moment(time_s, time_s) {}
     Moment(double time_s, double step_time_s) : ChannelTimes{time_s, step_time_s} {}
+};
+
+struct Animations::Places {
+    std::vector<Eigen::Affine3d> T_world_nodes, T_parent_meshes, T_world_meshes;
 };
 
 /// A node's properties at a moment.
@@ -197,6 +221,7 @@ Animations::Animations(AnimationRig rig)
         }
     }
     if (order_.size() != count) throw ArgumentError("animation rig: a node is its own descendant");
+    for (const Skin& skin : rig_.skins) skin_nodes_.push_back(common_node(skin, rig_.nodes));
 }
 
 std::vector<std::string> Animations::names() const {
@@ -283,13 +308,14 @@ Animations::Moment Animations::moment_before(size_t index, double from_s, double
 
 MovedMeshes Animations::moved_between(const std::vector<Pose>& from, const std::vector<Pose>& to) const {
     MovedMeshes moved;
+    const std::vector<Eigen::Affine3d> begins = places(from).T_parent_meshes,
+                                       ends = places(to).T_parent_meshes;
     for (size_t i = 0; i < rig_.nodes.size(); ++i) {
         const AnimationNode& node = rig_.nodes[i];
-        if (!node.mesh || node.matrix) continue;
-        const Eigen::Affine3d end = to[i].matrix();
+        if (!node.mesh || (node.matrix && !is_placed_by_joints(i))) continue;
+        const Eigen::Affine3d &begin = begins[i], &end = ends[i];
         // What is scaled to nothing is nowhere.
         if (is_flat(end)) continue;
-        const Eigen::Affine3d begin = from[i].matrix();
         // What rests does so exactly.
         moved.emplace_back(*node.mesh, begin.matrix() == end.matrix() ? Eigen::Affine3d::Identity()
                                                                       : end.inverse(Eigen::Affine) * begin);
@@ -310,9 +336,11 @@ MovedMeshes Animations::jumps(size_t index, double from_s, double to_s, bool loo
     if (std::abs(was.time_s - begin.time_s) <= same_time * duration_s(index)) was.time_s = begin.time_s;
     const Animation& animation = rig_.animations[index];
     const std::vector<Pose> from = pose(animation, begin), before = pose(animation, was);
+    const std::vector<Eigen::Affine3d> begins = places(from).T_parent_meshes,
+                                       ends_before = places(before).T_parent_meshes;
     std::vector<uint64_t> jumped;
     for (size_t i = 0; i < rig_.nodes.size(); ++i)
-        if (rig_.nodes[i].mesh && from[i].matrix().matrix() != before[i].matrix().matrix())
+        if (rig_.nodes[i].mesh && begins[i].matrix() != ends_before[i].matrix())
             jumped.push_back(rig_.nodes[i].mesh->identity());
     if (jumped.empty()) return {};
     MovedMeshes moved = moved_between(from, pose(animation, moment(index, to_s, loop)));
@@ -382,50 +410,86 @@ std::map<std::string, Camera> Animations::cameras_before(size_t index, double fr
     return placed(rig_.cameras, AnimatedProperty::camera, index, moment_before(index, from_s, to_s, loop));
 }
 
+Eigen::Affine3d Animations::pose_of_skin(int skin, const std::vector<Eigen::Affine3d>& T_world_nodes) const {
+    const std::vector<int>& joints = rig_.skins[size_t(skin)].joints;
+    const std::vector<Eigen::Affine3d>& T_joint_at_rest = rig_.skins[size_t(skin)].T_joint_at_rest;
+    Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+    if (const int node = skin_nodes_[size_t(skin)]; node >= 0) {
+        pose.linear() = without_stretch(T_world_nodes[size_t(node)].linear());
+        pose.translation() = T_world_nodes[size_t(node)].translation();
+    }
+    // The sign of a pose's determinant tells which side of a face is outside. It must be that of what joints
+    // do to the vertices.
+    size_t mirroring = 0;
+    for (size_t k = 0; k < joints.size(); ++k) {
+        const Eigen::Affine3d T = T_world_nodes[size_t(joints[k])] * T_joint_at_rest[k];
+        if (T.linear().determinant() < 0) ++mirroring;
+    }
+    const bool is_mirrored = 2 * mirroring > joints.size();
+    if ((pose.linear().determinant() < 0) != is_mirrored) pose.linear() *= -1;
+    return pose;
+}
+
+Animations::Places Animations::places(const std::vector<Pose>& poses) const {
+    const size_t count = rig_.nodes.size();
+    const Eigen::Affine3d identity = Eigen::Affine3d::Identity();
+    Places out{world_poses(poses), std::vector<Eigen::Affine3d>(count), std::vector<Eigen::Affine3d>(count)};
+    std::vector<Eigen::Affine3d> T_mesh_nodes(count, identity);
+    for (const size_t i : order_) {
+        const AnimationNode& node = rig_.nodes[i];
+        const bool has_parent = node.parent >= 0;
+        const Eigen::Affine3d& T_world_parent =
+            has_parent ? out.T_world_meshes[size_t(node.parent)] : identity;
+        const Eigen::Affine3d T_parent_node =
+            has_parent ? T_mesh_nodes[size_t(node.parent)] * poses[i].matrix() : poses[i].matrix();
+        Eigen::Affine3d& T_parent_mesh = out.T_parent_meshes[i];
+        if (!follows_joints(node)) {
+            T_parent_mesh = T_parent_node;
+        } else {
+            // Below what is scaled to nothing it is a point or flat whatever its pose is.
+            T_parent_mesh = is_flat(T_world_parent)
+                                ? identity
+                                : T_world_parent.inverse() * pose_of_skin(node.skin, out.T_world_nodes);
+            // What hangs from it goes with the node.
+            T_mesh_nodes[i] = T_parent_mesh.inverse() * T_parent_node;
+        }
+        out.T_world_meshes[i] = T_world_parent * T_parent_mesh;
+    }
+    return out;
+}
+
+bool Animations::is_placed_by_joints(size_t node) const {
+    const int parent = rig_.nodes[node].parent;
+    return follows_joints(rig_.nodes[node]) || (parent >= 0 && follows_joints(rig_.nodes[size_t(parent)]));
+}
+
 void Animations::apply(size_t index, double time_s, bool loop) {
     const Moment now = moment(index, time_s, loop);
     const std::vector<Pose> poses = pose(rig_.animations[index], now);
-    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
+    const Places at = places(poses);
     for (const size_t i : order_) {
         AnimationNode& node = rig_.nodes[i];
         if (!node.mesh) continue;
-        put_pose(i, poses[i]);
+        node.mesh->set_T_parent_mesh(at.T_parent_meshes[i]);
         if (poses[i].visible) show(*node.mesh, *poses[i].visible);
     }
     put_materials(rig_.animations[index], now);
     for (const size_t i : order_)
-        if (rig_.nodes[i].mesh && !rig_.nodes[i].deformation.empty()) put_vertices(i, poses, T_world_nodes);
-}
-
-bool Animations::is_without_own_pose(size_t node, const Pose& pose) const {
-    return follows_joints(rig_.nodes[node]) && is_flat(pose.matrix()) &&
-           std::ranges::find(rig_.nodes, int(node), &AnimationNode::parent) == rig_.nodes.end();
-}
-
-void Animations::put_pose(size_t node, const Pose& pose) {
-    rig_.nodes[node].mesh->set_T_parent_mesh(is_without_own_pose(node, pose) ? Eigen::Affine3d::Identity()
-                                                                             : pose.matrix());
-}
-
-void Animations::put_vertices(size_t i, const std::vector<Pose>& poses,
-                              const std::vector<Eigen::Affine3d>& T_world_nodes) {
-    AnimationNode& node = rig_.nodes[i];
-    const Eigen::Affine3d T_world_parent =
-        node.parent < 0 ? Eigen::Affine3d::Identity() : T_world_nodes[size_t(node.parent)];
-    deform(node, is_without_own_pose(i, poses[i]) ? T_world_parent : T_world_nodes[i], poses[i].weights,
-           T_world_nodes);
+        if (rig_.nodes[i].mesh && !rig_.nodes[i].deformation.empty())
+            deform(rig_.nodes[i], at.T_world_meshes[i], poses[i].weights, at.T_world_nodes);
 }
 
 void Animations::put_at_rest() {
     const std::vector<Pose> poses = pose_at_rest();
-    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
+    const Places at = places(poses);
     for (const size_t i : order_) {
-        const AnimationNode& node = rig_.nodes[i];
+        AnimationNode& node = rig_.nodes[i];
+        if (!node.mesh) continue;
+        if (is_placed_by_joints(i)) node.mesh->set_T_parent_mesh(at.T_parent_meshes[i]);
         const bool morphs = !node.deformation.targets_V.empty() &&
                             std::ranges::any_of(node.weights, [](float weight) { return weight != 0; });
-        if (!node.mesh || !(follows_joints(node) || morphs)) continue;
-        if (is_without_own_pose(i, poses[i])) put_pose(i, poses[i]);
-        put_vertices(i, poses, T_world_nodes);
+        if (follows_joints(node) || morphs)
+            deform(node, at.T_world_meshes[i], poses[i].weights, at.T_world_nodes);
     }
 }
 
@@ -449,8 +513,8 @@ void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh
                         const std::vector<Eigen::Affine3d>& T_world_nodes) {
     std::vector<Eigen::Affine3d> T_mesh_joints;
     if (follows_joints(node)) {
-        // The joints say where the vertices are in the world; the mesh is drawn with its own pose. Below what
-        // is scaled to nothing it is a point or flat whatever its vertices are.
+        // The joints say where the vertices are in the world; the mesh is drawn with the skin's pose. Below
+        // what is scaled to nothing it is a point or flat whatever its vertices are.
         if (is_flat(T_world_mesh)) return;
         const Skin& skin = rig_.skins[size_t(node.skin)];
         const Eigen::Affine3d T_mesh_world = T_world_mesh.inverse();
