@@ -231,8 +231,10 @@ TEST(Gltf, PrimitivesBecomePartsOfOneMesh) {
     primitives.push_back({{"attributes", {{"POSITION", other}, {"NORMAL", normal}}}, {"material", 0}});
     primitives.push_back(first);
     const MeshData mesh = node(decode(builder));
-    // The third primitive shares the first one's vertices.
-    EXPECT_EQ(mesh.V.rows(), 6);
+    // The third primitive shares the first one's vertices. Without normals each face has its own.
+    EXPECT_EQ(mesh.V.rows(), 9);
+    EXPECT_EQ(mesh.F, (Array3i::Dense{{0, 1, 2}, {6, 7, 8}, {3, 4, 5}}));
+    EXPECT_EQ(mesh.source_vertex, (Array1i::Dense{{0}, {1}, {2}, {0}, {1}, {2}, {3}, {4}, {5}}));
     ASSERT_EQ(mesh.parts.size(), 3u);
     EXPECT_EQ(mesh.parts[1].first_face, 1);
     EXPECT_EQ(mesh.parts[1].name, "red");
@@ -242,7 +244,7 @@ TEST(Gltf, PrimitivesBecomePartsOfOneMesh) {
     // glTF's default material is white metal; normals missing in the first primitive are computed.
     EXPECT_EQ(mesh.materials[size_t(mesh.parts[0].material)].metallic, 1);
     EXPECT_EQ(Vec3(mesh.N.row(0)), Vec3(0, 0, 1));
-    EXPECT_EQ(Vec3(mesh.N.row(3)), Vec3(0, 0, -1));
+    EXPECT_EQ(Vec3(mesh.N.row(6)), Vec3(0, 0, -1));
 }
 
 TEST(Gltf, ReadsMaterialExtensions) {

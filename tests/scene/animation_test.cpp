@@ -419,6 +419,24 @@ TEST(Animations, NormalsFollowTheInverseTranspose) {
     EXPECT_LT((mesh.N().row(0).transpose() - Vec3(0.5f, 1, 0).normalized()).norm(), 1e-6);
 }
 
+// The second joint goes 2 along z: the corners are (0, 0, 0), (1, 0, 1) and (0, 1, 2), and the cross product
+// of the edges (-1, -2, 1).
+TEST(Animations, FlatFacesHaveTheirOwnNormalsInEveryPose) {
+    MeshData data = *triangle().snapshot();
+    data.N = Array3f::Dense(Vec3(0, 0, 1).transpose().replicate(3, 1));
+    Mesh mesh(data);
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].deformation.N = data.N;
+    rig.nodes[0].deformation.flat_F = data.F;
+    rig.animations[0].channels[0].values = ArrayXf::Dense{{0, 1, 2}, {0, 1, 2}};
+    AnimationRig broken = rig;
+    Animations(std::move(rig)).apply(0, 0);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_LT((mesh.N().row(i).transpose() - Vec3(-1, -2, 1).normalized()).norm(), 1e-6);  // of rounding
+    broken.nodes[0].deformation.flat_F = Array3i::Dense{{0, 1, 3}};
+    EXPECT_THROW(Animations(std::move(broken)), ArgumentError);
+}
+
 // The tangent (1, 1, 0) is turned as edges are: to (2, 1, 0).
 TEST(Animations, TangentsFollowTheJoints) {
     MeshData data = *triangle().snapshot();

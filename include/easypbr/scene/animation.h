@@ -66,6 +66,8 @@ struct Deformation {
     ArrayXf joints, weights;
     /// For each target what is added to V and N at weight 1; N may be empty.
     std::vector<Array3f> targets_V, targets_N;
+    /// Faces with vertices of their own, whose normals are those of the face in every pose; or empty.
+    Array3i flat_F;
 
     bool empty() const { return joints.empty() && targets_V.empty(); }
 };
@@ -136,8 +138,8 @@ class Animations {
     /// normals of what has skins or morph targets, and materials. A mesh that follows joints has the pose of
     /// the node that all of them hang from, without its scale, whatever its own node's is (glTF 2.0, section
     /// 3.7.3.3). With `loop` the time goes around, and a whole number of durations after the beginning is the
-    /// end; else the animation rests at its ends. What the animation leaves alone is at rest. Throws NameError
-    /// for an unknown index, ArgumentError for a time that is not finite.
+    /// end; else the animation rests at its ends. What the animation leaves alone is at rest. Throws
+    /// NameError for an unknown index, ArgumentError for a time that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
     /// Puts the vertices and normals where they are without an animation: by the weights at rest, and where

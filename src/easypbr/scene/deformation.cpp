@@ -5,6 +5,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/directions.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 namespace {
@@ -49,6 +50,16 @@ void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& 
     });
 }
 
+void put_face_normals(const Array3i& F, Deformed& out) {
+    if (!out.N.rows()) return;
+    parallel_for(size_t(F.rows()), morph_grain, [&](size_t i) {
+        const auto face = F.row(Eigen::Index(i));
+        const auto at = [&](int k) { return Vec3d(out.V.row(face[k]).transpose().cast<double>()); };
+        const Vec3d n = detail::direction_or_z((at(1) - at(0)).cross(at(2) - at(0)));
+        for (int k = 0; k < 3; ++k) out.N.row(face[k]) = n.cast<float>().transpose();
+    });
+}
+
 void normalize(Array3f::Dense& N) {
     parallel_for(size_t(N.rows()), morph_grain, [&](size_t i) {
         auto n = N.row(Eigen::Index(i));
@@ -67,6 +78,7 @@ void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
     for (size_t k = 0; good && k < d.targets_V.size(); ++k)
         good = fits(d.targets_V[k]) && fits(d.targets_N[k]);
     if (!good) throw ArgumentError("animation rig: joints, weights or morph targets do not fit the vertices");
+    require_faces(d.flat_F, n);
     if (!has_skin || d.joints.empty()) return;
     // NaN is neither.
     if (!(d.joints.array() >= 0 && d.joints.array() < float(joints)).all())
@@ -81,6 +93,7 @@ Deformed deformed(const Deformation& from, const std::vector<float>& weights,
     add_targets(from, weights, out);
     if (!T_mesh_joints.empty()) follow_joints(from, T_mesh_joints, out);
     normalize(out.N);
+    put_face_normals(from.flat_F, out);
     return out;
 }
 

@@ -16,8 +16,8 @@ struct Deformed {
 };
 
 /// The targets are added with their weights. Weighted sums of the joints' matrices, if there are any, then
-/// move V; their cofactors turn N, as the inverse transpose does, so that the signs of tangents stay. Targets
-/// do not turn tangents.
+/// move V; their cofactors turn N, as the inverse transpose does, so that the signs of tangents stay. Faces
+/// of flat_F have their own normals. Targets do not turn tangents.
 Deformed deformed(const Deformation& from, const std::vector<float>& weights,
                   const std::vector<Eigen::Affine3d>& T_mesh_joints);
 

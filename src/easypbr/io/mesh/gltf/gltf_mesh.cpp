@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
-#include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
@@ -16,6 +14,7 @@
 #include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
+#include "easypbr/io/mesh/gltf/gltf_vertices.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
@@ -26,58 +25,6 @@ namespace {
 constexpr size_t vertex_grain = 1 << 15;
 
 enum class Mode : size_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
-
-/// Vertices that primitives with the same accessors share. Absent attributes have no rows.
-struct VertexBlock {
-    Eigen::Index first = 0, row_count = 0;
-    ArrayXf::Dense V, N, UV, tangents, C, joints, weights;
-    std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
-    GltfValues values;                                 ///< without rows where there are none
-    std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
-    std::vector<char> points;  ///< whether a primitive of points has the vertex; empty: all are drawn
-    bool is_whole = false;     ///< a primitive without indices has all vertices
-};
-
-void encode_colors(ArrayXf::Dense& C) {
-    parallel_for(size_t(C.rows()), vertex_grain, [&](size_t i) {
-        for (int c = 0; c < 3; ++c) {
-            float& value = C(Eigen::Index(i), c);
-            value = value > 0 ? srgb_from_linear(std::min(value, 1.0f)) : 0.0f;
-        }
-    });
-}
-
-/// Normals that are unit vectors keep their bits; quantised ones are brought to unit length.
-void normalize_rows(ArrayXf::Dense& N) {
-    parallel_for(size_t(N.rows()), vertex_grain, [&](size_t i) {
-        auto row = N.row(Eigen::Index(i));
-        const float length = row.norm();
-        if (!(length > 1e-20f && length < 1e20f))
-            row << 0, 0, 1;
-        else if (std::abs(length - 1) > 1e-3f)
-            row /= length;
-    });
-}
-
-/// Unit directions and signs of 1 or -1; 0 0 0 0 where a row is none.
-void tidy_tangents(ArrayXf::Dense& tangents) {
-    parallel_for(size_t(tangents.rows()), vertex_grain, [&](size_t i) {
-        auto row = tangents.row(Eigen::Index(i));
-        const float length = row.head<3>().norm(), sign = row[3];
-        if (!(length > 1e-20f && length < 1e20f) || !(std::abs(sign) > 0))
-            row.setZero();
-        else
-            row << Eigen::RowVector3f(row.head<3>() / length), std::copysign(1.0f, sign);
-    });
-}
-
-void flip_v(ArrayXf::Dense& UV) {
-    parallel_for(size_t(UV.rows()), vertex_grain, [&](size_t i) {
-        auto row = UV.row(Eigen::Index(i));
-        if (!row.allFinite()) row.setZero();
-        row[1] = 1 - row[1];
-    });
-}
 
 /// Triangle corners of a list of `count` indices, by the winding rules of the specification, section 3.7.2.1.
 template <class Index>
@@ -213,10 +160,7 @@ class MeshBuilder {
             read(key[target], 3, 3, block.targets_V.emplace_back());
             read(key[target + 1], 3, 3, block.targets_N.emplace_back());
         }
-        normalize_rows(block.N);
-        tidy_tangents(block.tangents);
-        flip_v(block.UV);
-        encode_colors(block.C);
+        tidy(block);
         block.row_count = block.V.rows();
         vertex_count_ += block.row_count;
         if (vertex_count_ > std::numeric_limits<int32_t>::max()) fail("has more than 2^31 vertices");
@@ -352,21 +296,27 @@ class MeshBuilder {
         out.V = mesh.data.V;
         out.N = mesh.data.N;
         out.uv_tangents = mesh.data.uv_tangents;
+        out.flat_F = flat_F_;
     }
 
+    /// Section 3.7.2.1 of the specification: without normals, flat ones.
     void compute_missing_normals() {
         const auto has_normals = [](const VertexBlock& block) { return block.N.rows() > 0; };
-        if (std::none_of(blocks_.begin(), blocks_.end(), has_normals)) {
-            // Section 3.7.2.1 of the specification: without normals, flat ones.
+        if (std::ranges::none_of(blocks_, has_normals)) {
             out_.style.flat = true;
             return;
         }
-        for (VertexBlock& block : blocks_)
-            if (!has_normals(block))
-                block.N =
-                    vertex_normals(Array3f(block.V),
-                                   Array3i(Eigen::Map<const Array3i::Dense>(
-                                       block.triangles.data(), Eigen::Index(block.triangles.size() / 3), 3)));
+        if (std::ranges::all_of(blocks_, has_normals)) return;
+        GltfFlatFaces flat = split_flat_faces(blocks_, faces_, edges_, name_);
+        vertex_count_ = blocks_.back().first + blocks_.back().row_count;
+        flat_F_ = std::move(flat.F);
+        out_.source_vertex = std::move(flat.source_vertex);
+        for (VertexBlock& block : blocks_) {
+            if (has_normals(block)) continue;
+            const Eigen::Map<const Array3i::Dense> F(block.triangles.data(),
+                                                     Eigen::Index(block.triangles.size() / 3), 3);
+            block.N = vertex_normals(Array3f(block.V), Array3i(F));
+        }
     }
 
     void merge_vertices() {
@@ -406,6 +356,7 @@ class MeshBuilder {
     std::vector<std::optional<size_t>> sources_;  ///< of out_.materials
     Eigen::Index vertex_count_ = 0;
     std::vector<int32_t> faces_, edges_;
+    Array3i flat_F_;  ///< with vertices of their own, as they have no normals in the file
 };
 
 }  // namespace
