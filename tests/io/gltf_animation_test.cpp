@@ -144,6 +144,31 @@ TEST(GltfAnimation, WhatAnAnimationLeavesAloneKeepsItsWeights) {
     }
 }
 
+// Section 3.11: as many values as keys times morph targets.
+TEST(GltfAnimation, WeightsMustBeOnePerTarget) {
+    GltfBuilder file = lifted();
+    nlohmann::json& primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["targets"].push_back(primitive["targets"][0]);
+    file.json["meshes"][0]["weights"] = {0.5, 0};
+    const size_t input = file.floats({0, 2}, 1);
+    const auto with_values = [&](const std::vector<float>& values) {
+        GltfBuilder whole = file;
+        whole.json["animations"] = {
+            {{"samplers", {{{"input", input}, {"output", whole.floats(values, 1)}}}},
+             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+        return whole;
+    };
+    EXPECT_EQ(error_of(with_values({0, 1, 0, 1})), "no error");
+    for (const size_t count : {2, 3, 6}) {
+        const std::string error = error_of(with_values(std::vector<float>(count, 0)));
+        EXPECT_NE(error.find("has 2 keys of 2 weights, but accessors["), std::string::npos) << error;
+    }
+    GltfBuilder without = with_values({0, 1});
+    without.json["meshes"][0]["primitives"][0].erase("targets");
+    without.json["meshes"][0].erase("weights");
+    EXPECT_EQ(load(without).animations.duration_s(0), 0) << "left out";
+}
+
 // Section 3.7.3.3: a skinned mesh ignores its node's transform. One joint at y = 5 without an inverse bind
 // matrix; the node at x = 100.
 TEST(GltfAnimation, SkinsFollowTheirJointsWithoutAnAnimation) {

@@ -20,6 +20,18 @@ struct Sampler {
     size_t output = 0;
 };
 
+/// Morph targets of a node's mesh.
+int target_count(const GltfDocument& document, size_t node) {
+    const auto mesh = document.optional_integer(document.item("nodes", node), "mesh");
+    const Json* primitives = mesh ? member(document.item("meshes", *mesh), "primitives") : nullptr;
+    size_t count = 0;
+    if (primitives && primitives->is_array())
+        for (const Json& primitive : *primitives)
+            if (const Json* targets = member(primitive, "targets"); targets && targets->is_array())
+                count = std::max(count, targets->size());
+    return int(count);
+}
+
 class AnimationReader {
   public:
     AnimationReader(GltfDocument& document, GltfMaterialPointers& pointers, const Json& json, size_t index)
@@ -65,9 +77,8 @@ class AnimationReader {
         if (!node || known == std::end(properties)) return {};
         document_.item("nodes", *node);
         const auto property = AnimatedProperty(known - std::begin(properties));
-        const bool weights = property == AnimatedProperty::weights;
-        const int columns = weights ? 0 : property == AnimatedProperty::rotation ? 4 : 3;
-        return read_keys(json, int(*node), property, columns);
+        if (property == AnimatedProperty::weights) return read_weights(json, *node);
+        return read_keys(json, int(*node), property, property == AnimatedProperty::rotation ? 4 : 3);
     }
 
     AnimationChannel read_material(const Json& json, const GltfMaterialTarget& target) {
@@ -91,7 +102,17 @@ class AnimationReader {
         return channel;
     }
 
-    /// Keys with rows of `columns` values; 0: as many as there are.
+    std::optional<AnimationChannel> read_weights(const Json& json, size_t node) {
+        if (const int targets = target_count(document_, node))
+            return read_keys(json, int(node), AnimatedProperty::weights, targets);
+        log_warning(
+            fmt::format("{}: {} animates the weights of nodes[{}], which has no morph targets; they "
+                        "are left out",
+                        document_.path().string(), name_, node));
+        return {};
+    }
+
+    /// Keys with rows of `columns` values.
     AnimationChannel read_keys(const Json& json, int target, AnimatedProperty property, int columns) {
         AnimationChannel channel;
         channel.node = target;
@@ -144,19 +165,17 @@ class AnimationReader {
         return sampler;
     }
 
-    /// One row for each key, or three.
+    /// One row for each key, or three. The file has weights one by one.
     ArrayXf::Dense read_values(const AnimationChannel& channel, size_t accessor, int columns) {
-        const bool weights = columns == 0;
-        if (weights) columns = 1;
-        ArrayXf::Dense values = read_floats(document_, accessor, columns, columns);
+        const int width = channel.property == AnimatedProperty::weights ? 1 : columns;
+        const ArrayXf::Dense values = read_floats(document_, accessor, width, width);
         const auto keys = Eigen::Index(channel.times.size()) *
                           (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
-        const bool fits = weights ? values.rows() > 0 && values.rows() % keys == 0 : values.rows() == keys;
-        if (!fits || !values.allFinite())
-            fail(fmt::format("has {} keys, but accessors[{}] has {} values, or some that are not finite",
-                             keys, accessor, values.rows()));
-        if (!weights) return values;
-        return Eigen::Map<const ArrayXf::Dense>(values.data(), keys, values.rows() / keys);
+        if (values.size() != keys * columns || !values.allFinite())
+            fail(fmt::format("has {} keys{}, but accessors[{}] has {} values, or some that are not finite",
+                             keys, width == columns ? "" : fmt::format(" of {} weights", columns), accessor,
+                             values.rows()));
+        return Eigen::Map<const ArrayXf::Dense>(values.data(), keys, columns);
     }
 
     GltfDocument& document_;
