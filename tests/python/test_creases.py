@@ -1,5 +1,9 @@
 """Sharp edges and faces of both windings in meshes without normals."""
 
+import base64
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -69,6 +73,56 @@ def test_a_mesh_that_deforms_keeps_its_sharp_edges():
     # At most three sides are seen, each with one normal: 0, 89.4, 178.9 and 200 parts of 200 are none that rounding
     # takes to two numbers when the encoding is off by 1e-4.
     assert len(np.unique(np.rint(seen * 200), axis=0)) <= 3
+
+
+def hinge(angle_deg: float) -> np.ndarray:
+    """Six vertices of two quads that share the z axis, folded by an angle."""
+    x, y = np.cos(np.radians(angle_deg)), -np.sin(np.radians(angle_deg))
+    return np.array([[0, 0, -1], [0, 0, 1], [-1, 0, 1], [-1, 0, -1], [x, y, 1], [x, y, -1]], np.float32)
+
+
+def hinge_file(path: Path) -> Path:
+    """Folded by 70 degrees at rest, and within a second to 40."""
+    indices = np.array([0, 2, 1, 0, 3, 2, 0, 1, 4, 0, 4, 5], np.uint16)
+    keys = np.array([0, 1], np.float32)
+    moved = hinge(40) - hinge(70)
+    arrays = [(hinge(70), "VEC3", 5126), (moved, "VEC3", 5126), (indices, "SCALAR", 5123), (keys, "SCALAR", 5126)]
+    views, accessors, data = [], [], b""
+    for i, (array, kind, component) in enumerate(arrays):
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes})
+        accessors.append({"bufferView": i, "componentType": component, "count": len(array), "type": kind})
+        data += array.tobytes()
+    accessors[0] |= {"min": hinge(70).min(axis=0).tolist(), "max": hinge(70).max(axis=0).tolist()}
+    primitive = {"attributes": {"POSITION": 0}, "indices": 2, "targets": [{"POSITION": 1}]}
+    channel = {"sampler": 0, "target": {"node": 0, "path": "weights"}}
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    content = {
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive]}],
+        "animations": [{"samplers": [{"input": 3, "output": 3}], "channels": [channel]}],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": len(data), "uri": uri}],
+    }
+    path.write_text(json.dumps(content))
+    return path
+
+
+@pytest.mark.parametrize("times", [[1], [0, 1], [1, 0], [0]])
+def test_edges_of_what_an_animation_moves_are_those_at_rest(times, tmp_path):
+    file = easypbr.load_scene(hinge_file(tmp_path / "hinge.gltf"))
+    scene = Scene()
+    scene.show(file.mesh, "hinge")
+    settings = {"style": {"flat": False}, "camera": {"position": (1.5, 3, 3), "target": (0, 0, 0)}}
+    view = easypbr.Viewer((48, 36), settings, scene)
+    for seconds in times:
+        file.animations.apply(seconds, 0)
+        normals = view.layers(["normal_world"])["normal_world"]
+    drawn_normals = normals[np.linalg.norm(normals, axis=2) > 0.5]
+    # 70 degrees are sharp, whatever was drawn first: one normal for each quad. 1/50 is coarser than the encoding.
+    assert len(np.unique(np.rint(drawn_normals * 50), axis=0)) == 2
 
 
 def seen(what) -> np.ndarray:

@@ -108,6 +108,8 @@ TEST(Animations, SkinsFollowTheirJoints) {
     EXPECT_EQ(mesh.V(), (Array3f::Dense{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}}));
     animations.apply(0, 1.25);
     EXPECT_EQ(mesh.V()(2, 0), 1) << "goes around";
+    EXPECT_EQ(mesh.snapshot()->rest_shape.V, triangle().V()) << "tells which edges are sharp in all poses";
+    EXPECT_EQ(mesh.snapshot()->rest_shape.F_revision, mesh.F().revision());
     animations.apply(0, 1.25, false);
     EXPECT_EQ(mesh.V()(2, 0), 4) << "rests";
 }

@@ -56,6 +56,29 @@ MeshData partly_turned(const MeshData& whole) {
 
 }  // namespace
 
+// Folded by 40 degrees at rest and by 80 now, at a crease angle of 60; and the other way round.
+TEST(Creases, AMeshThatDeformsHasThoseAtRest) {
+    for (const double at_rest : {40.0, 80.0}) {
+        MeshData mesh = folded(120 - at_rest);
+        EXPECT_EQ(find_creases(mesh, 60).empty(), at_rest > 60) << "as it is now";
+        mesh.rest_shape = {folded(at_rest).V, mesh.F.revision()};
+        EXPECT_EQ(find_creases(mesh, 60).empty(), at_rest < 60);
+        mesh.F = Array3i::Dense(mesh.F);
+        EXPECT_EQ(find_creases(mesh, 60).empty(), at_rest > 60) << "other faces";
+    }
+}
+
+// What is drawn flat is written with the normals of the faces as they are: the fold is none at rest.
+TEST(Creases, FlatFacesHaveTheNormalsOfTheirPose) {
+    MeshData mesh = folded(90);
+    mesh.rest_shape = {folded(0).V, mesh.F.revision()};
+    mesh.style.flat = true;
+    add_drawn_normals(mesh);
+    // Rounding of cos and sin of the angle.
+    EXPECT_LT((mesh.N.row(mesh.F(0, 0)) - Eigen::RowVector3f(0, 0, 1)).norm(), 1e-6f);
+    EXPECT_LT((mesh.N.row(mesh.F(1, 0)) - Eigen::RowVector3f(1, 0, 0)).norm(), 1e-6f);
+}
+
 TEST(Creases, SplitTheCornersOfACube) {
     MeshData mesh = cube();
     mesh.L = Array1i::Dense{{0}, {0}, {1}, {1}, {2}, {2}, {3}, {3}, {4}, {4}, {5}, {5}};

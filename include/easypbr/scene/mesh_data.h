@@ -1,6 +1,7 @@
 // MeshData: the plain data of a mesh. The handle to them, which programs edit, is Mesh (scene/mesh.h).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -62,6 +63,13 @@ class MeshList : public std::vector<Mesh> {
     ~MeshList();
 };
 
+/// The positions that tell which edges of a mesh are sharp that follows joints or morph targets: its edges do
+/// not turn sharp and smooth as it moves.
+struct RestShape {
+    Array3f V;                ///< n x 3 positions, or empty
+    uint64_t F_revision = 0;  ///< of the faces that they are for: with others they count nothing
+};
+
 /// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).
 struct MeshData {
     std::string name;
@@ -97,6 +105,7 @@ struct MeshData {
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
     Array1i source_face;  ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
+    RestShape rest_shape;
 
     std::vector<Material> materials;  ///< at least one as soon as the mesh is drawn; a default one is added
     std::vector<MeshPart> parts;      ///< cover F without overlap; empty: all faces have material 0

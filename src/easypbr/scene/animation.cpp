@@ -486,6 +486,7 @@ void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_mesh
     const Deformed out = deformed(node.deformation, weights, T_mesh_joints);
     node.mesh->edit([&](MeshData& data) {
         data.V = out.V;
+        data.rest_shape = {node.deformation.V, data.F.revision()};
         if (out.N.rows()) data.N = out.N;
         if (out.uv_tangents.rows()) data.uv_tangents = out.uv_tangents;
     });

@@ -238,8 +238,17 @@ Array3f normals_by_side(const MeshData& mesh, const Array3f& united_V, const Cre
 
 }  // namespace
 
+std::optional<Array3f> rest_positions(const MeshData& mesh) {
+    const RestShape& rest = mesh.rest_shape;
+    if (rest.V.empty() || rest.V.rows() != mesh.V.rows() || rest.F_revision != mesh.F.revision()) return {};
+    return rest.V;
+}
+
 Creases find_creases(const MeshData& mesh, float crease_angle_deg) {
-    const UnitedMesh united(mesh);
+    MeshData shape;
+    shape.V = rest_positions(mesh).value_or(mesh.V);
+    shape.F = mesh.F, shape.source_vertex = mesh.source_vertex;
+    const UnitedMesh united(shape);
     const double least = least_cosine(crease_angle_deg);
     const std::vector<KeyedIndex> corners = corners_at(united.F, leaning_vertices(united, least));
     const std::vector<size_t> runs = runs_of(corners);
@@ -291,6 +300,8 @@ std::vector<int32_t> split_creases(MeshData& mesh, float crease_angle_deg) {
 
 void add_drawn_normals(MeshData& mesh) {
     const bool flat = mesh.style.flat.value_or(false);
+    // What is drawn flat has the normals of its faces as they are now.
+    if (flat) mesh.rest_shape = {};
     const Creases creases = find_creases(mesh, flat ? 0 : automatic_crease_deg);
     const Array4f tangents = mesh.uv_tangents;
     split_creases(mesh, creases);

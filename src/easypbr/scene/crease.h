@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,12 +26,16 @@ struct Creases {
     bool empty() const { return F.empty(); }
 };
 
+/// The positions of MeshData::rest_shape; none where there are none for the mesh's vertices and faces.
+std::optional<Array3f> rest_positions(const MeshData& mesh);
+
 /// Faces round a vertex share a normal when a chain of common edges joins them across which the face normals
 /// differ by at most `crease_angle_deg`. Where two faces run through a common edge in the same direction, one
 /// of them is wound the wrong way round: it is taken as turned over, and has the opposite normal, so that
 /// each face's normals are on the side that its winding tells. Faces that are folded onto each other share no
 /// normal at any angle. Vertices that were split from one (source_vertex) count as one, as for
-/// smooth_normals(). A face without area joins what it touches. Does not depend on the number of threads.
+/// smooth_normals(). A face without area joins what it touches. The angles are those of rest_positions(), if
+/// there are any. Does not depend on the number of threads.
 Creases find_creases(const MeshData& mesh, float crease_angle_deg);
 
 /// Fills N, and repeats the vertices that need several normals: source_vertex is set then. The repeated ones

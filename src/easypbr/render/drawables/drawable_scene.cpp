@@ -310,10 +310,15 @@ std::shared_ptr<const MeshData> DrawableCache::creased(const SceneSnapshot::Obje
     const MeshData& whole = *object.mesh;
     if (whole.F.empty() || !whole.N.empty()) return object.mesh;
     const uint64_t F = whole.F.revision(), source = whole.source_vertex.revision();
-    const Creases& creases = *kept_creases_.get({object.node, F, source, angle_deg}, [&] {
-        return creases_.get({whole.V.revision(), F, source, angle_deg},
+    const auto found = [&](const Array3f& V) {
+        return creases_.get({V.revision(), F, source, angle_deg},
                             [&] { return std::make_shared<const Creases>(find_creases(whole, angle_deg)); });
-    });
+    };
+    const std::optional<Array3f> rest = rest_positions(whole);
+    const SharedCreases shared =
+        rest ? found(*rest)
+             : kept_creases_.get({object.node, F, source, angle_deg}, [&] { return found(whole.V); });
+    const Creases& creases = *shared;
     if (creases.empty()) return object.mesh;
     const std::string key = fmt::format("crease {} {}", creases.F.revision(), arrays_of(whole));
     return get(key, whole, sources, [&](Entry& entry) {

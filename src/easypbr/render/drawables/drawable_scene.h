@@ -99,8 +99,8 @@ class DrawableCache {
     using SharedCreases = std::shared_ptr<const Creases>;
     /// Of V, F and source_vertex at an angle.
     RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, float>, SharedCreases> creases_;
-    /// Of a node with these F and source_vertex: those of its first V, so that edges of a mesh that deforms
-    /// do not turn sharp and smooth from picture to picture.
+    /// Of a node with these F and source_vertex, without a shape at rest: those of its first V, so that edges
+    /// of a mesh that deforms do not turn sharp and smooth from picture to picture.
     RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, float>, SharedCreases> kept_creases_;
 };
 
