@@ -7,6 +7,7 @@
 #include "easypbr/app/face_depth.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/picture.h"
+#include "easypbr/core/image.h"
 #include "easypbr/render/pipeline/surface_frame.h"
 
 namespace easypbr::app {
@@ -22,11 +23,17 @@ class PickBuffer {
     /// where there is no surface or outside of the picture. Lines are no surface: what is behind them counts.
     std::optional<Pick> at(Vec2d pixel) const;
 
+    /// Along the optical axis, where the pixels' own rays meet what is seen; 0 where there is nothing. One
+    /// channel, f32.
+    Image depths() const;
+
     Vec2i size() const { return lens_->is_identity() ? frame_.size : lens_->size; }
 
   private:
-    /// Of what is drawn at a pixel, where the ray through the centre of the picture's pixel meets it.
-    double depth_at(Vec2d centre, size_t drawn) const;
+    /// In the camera's frame, OpenCV's axes, through a point of the picture.
+    PixelRay ray_through(Vec2d pixel) const;
+    /// Where a ray meets what is drawn at a pixel.
+    double depth_along(const PixelRay& ray, size_t drawn) const;
     /// Through a lens the ray of the drawn pixel, which is another one.
     std::optional<PixelRay> ray_of_drawn(size_t drawn) const;
 

@@ -359,21 +359,28 @@ std::map<std::string, Image> Session::render_layers_once(const std::vector<std::
     prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
         return layer == render::Layer::object_id || layer == render::Layer::element_id;
     });
+    const bool has_depth = std::ranges::find(layers, render::Layer::depth) != layers.end();
+    prepared.options.surfaces = has_depth && prepared.resolved.camera.is_warped();
     refined_.reset();
     const Drawn begun = begin(prepared, true, false);
     render::Renderer& renderer = *device_->renderer;
     const gl::ContextScope scope(*device_->context);
     std::vector<Image> drawn;
+    render::SurfaceFrame surfaces;
     if (const TiledPicture picture = tiled(prepared); picture.is_whole()) {
         renderer.draw(prepared.scene, prepared.resolved, prepared.options, prepared.images);
         for (const render::Layer layer : layers) drawn.push_back(renderer.read_layer(layer));
+        if (prepared.options.surfaces) surfaces = renderer.read_surfaces();
     } else {
-        drawn = picture.draw_layers(renderer, layers);
+        drawn = picture.draw_layers(renderer, layers, surfaces);
     }
     gl::Context::check();
     latch_from(prepared);
     std::map<std::string, Image> images;
     for (size_t i = 0; i < names.size(); ++i) images[names[i]] = pick_nearest(drawn[i], begun.lens());
+    // The nearest drawn pixel has another ray: on a slanted face it is at another depth.
+    if (prepared.options.surfaces)
+        images["depth"] = PickBuffer(std::move(surfaces), begun.camera(), begun.shared_lens()).depths();
     return images;
 }
 

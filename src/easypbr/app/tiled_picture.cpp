@@ -1,6 +1,7 @@
 #include "easypbr/app/tiled_picture.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "easypbr/core/step_progress.h"
 
@@ -25,6 +26,30 @@ void place(const Image& from, Vec2i corner, const Tile& tile, Vec2i size, Image&
 /// Where the inner part lies in what is drawn.
 Vec2i corner_of(const Tile& tile) {
     return {tile.inner.x - tile.outer.x, tile.inner.y - tile.outer.y};
+}
+
+template <class T>
+void place(const std::vector<T>& from, const Tile& tile, Vec2i size, std::vector<T>& picture) {
+    picture.resize(size_t(size.x()) * size_t(size.y()));
+    const Vec2i corner = corner_of(tile);
+    for (int y = 0; y < tile.inner.height; ++y) {
+        const size_t row = size_t(corner.y() + y) * size_t(tile.outer.width) + size_t(corner.x()),
+                     to = size_t(tile.inner.y + y) * size_t(size.x()) + size_t(tile.inner.x);
+        std::copy_n(from.data() + row, tile.inner.width, picture.data() + to);
+    }
+}
+
+void place(render::SurfaceFrame from, const Tile& tile, Vec2i size, render::SurfaceFrame& picture) {
+    place(from.depth, tile, size, picture.depth);
+    place(from.object, tile, size, picture.object);
+    place(from.element, tile, size, picture.element);
+    place(from.is_face, tile, size, picture.is_face);
+    place(from.part, tile, size, picture.part);
+    picture.size = size;
+    picture.camera = from.camera;
+    picture.scene = std::move(from.scene);
+    picture.only_faces = std::move(from.only_faces);
+    picture.voxel_sizes = std::move(from.voxel_sizes);
 }
 
 }  // namespace
@@ -65,12 +90,14 @@ Image TiledPicture::draw(render::Renderer& renderer) const {
 }
 
 std::vector<Image> TiledPicture::draw_layers(render::Renderer& renderer,
-                                             const std::vector<render::Layer>& layers) const {
+                                             const std::vector<render::Layer>& layers,
+                                             render::SurfaceFrame& surfaces) const {
     std::vector<Image> pictures(layers.size());
     for (const Tile& tile : tiles) {
         draw_tile(renderer, tile);
         for (size_t i = 0; i < layers.size(); ++i)
             place(renderer.read_layer(layers[i]), corner_of(tile), tile, options.size, pictures[i]);
+        if (options.surfaces) place(renderer.read_surfaces(), tile, options.size, surfaces);
     }
     return pictures;
 }

@@ -31,8 +31,9 @@ struct TiledPicture {
 
     /// Both need the context current.
     Image draw(render::Renderer& renderer) const;
-    std::vector<Image> draw_layers(render::Renderer& renderer,
-                                   const std::vector<render::Layer>& layers) const;
+    /// `surfaces`: of the whole picture, where options.surfaces asks for them.
+    std::vector<Image> draw_layers(render::Renderer& renderer, const std::vector<render::Layer>& layers,
+                                   render::SurfaceFrame& surfaces) const;
 
   private:
     void draw_tile(render::Renderer& renderer, const render::Tile& tile) const;

@@ -313,6 +313,7 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
     kept_.reset();
     pipeline_.begin(options.size);
     camera_ = resolved.camera;
+    if (options.surfaces) keep_surfaces(scene, resolved, options.size, images);
     const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
     sources_ = drawable.sources;
     const DrawList list =
@@ -321,7 +322,7 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
     shot.sample_count = 1;
     const Frame frame = make_frame(shot, 0, resolved.camera, pipeline_.bounds_of(drawable.scene),
                                    list.reaches_beyond_vertices());
-    pipeline_.draw_surfaces(frame, list, {.ids = options.ids});
+    pipeline_.draw_surfaces(frame, list, {.ids = options.ids || options.surfaces});
     has_layers_ = true;
     if (options.occlusion) pipeline_.occlude_surfaces(frame, list);
     evict_unused();

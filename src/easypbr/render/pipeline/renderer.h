@@ -31,7 +31,8 @@ struct DrawOptions {
                           ///< are half opaque or more, and there is no picture
     bool occlusion = false;  ///< with `layers`: Layer::ambient_occlusion, too
     bool surfaces = false;   ///< read_surfaces() and read_layer() will be called: where the picture's last
-                             ///< frame does not hold what the pixels' centres see, that is drawn once more
+                             ///< frame does not hold what the pixels' centres see, that is drawn once more;
+                             ///< with `layers` they hold it, of a tile too
     std::shared_ptr<const Motion> motion = {};  ///< since the picture before: blurs what moved, in several
                                                 ///< samples
 };
