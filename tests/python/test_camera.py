@@ -30,6 +30,26 @@ def test_opencv_round_trip():
         Camera.from_opencv(np.eye(4), T, (640, 480))
 
 
+@pytest.mark.parametrize("focal, size", [(60000, (640, 480)), (6000, (640, 40)), (9000, (9000, 16)), (300, (320, 1)), (3, (64, 640))])
+def test_a_k_may_have_any_angle(focal, size):
+    """The vertical angle is 0.46, 0.38, 0.1, 0.19 and 179 degrees: the setting camera.fov_y_deg takes 1 to 170."""
+    width, height = size
+    K = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])
+    scene = Scene()
+    # Seen along its normal, at a depth of 2 everywhere, and wider than any of the pictures but the last.
+    wall = shapes.plane(40)
+    wall.T_parent_mesh = [[1.0, 0, 0, 0], [0, 0, -1, 0], [0, -1, 0, 2], [0, 0, 0, 1]]
+    scene.show(wall, "wall")
+    view = Viewer((64, 48), scene=scene)
+    view.camera = Camera.from_opencv(K, np.eye(4), size)
+    fov_y_deg = 2 * np.degrees(np.arctan(height / 2 / focal))
+    assert view.camera.fov_y_deg == pytest.approx(fov_y_deg)
+    assert view.settings["camera.fov_y_deg"] == (1 if fov_y_deg < 1 else 170)
+    assert view.render(samples=1).shape == (48, 64, 4)
+    depth = view.render_layers(["depth"])["depth"]
+    np.testing.assert_allclose(depth[24, 32], 2, rtol=1e-6)  # float32
+
+
 def test_from_opengl_refuses_what_is_no_pose():
     with pytest.raises(ValueError):
         Camera.from_opengl(np.diag([2, 1, 1, 1]))

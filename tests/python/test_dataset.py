@@ -276,6 +276,14 @@ def test_objects_that_cannot_be_seen_are_named(changes, message):
         FrameMaker(small(occlusion=OcclusionSpec(0.0, 1.0, 3), **changes)).make(0)
 
 
+@pytest.mark.parametrize("fov_y_deg, size", [(0.001, 2e-5), (0.5, 0.01), (175.0, 6.0), (179.0, 30.0)])
+def test_lenses_of_every_angle(fov_y_deg, size):
+    """Wider and narrower than the setting camera.fov_y_deg takes: a data set's cameras have a K."""
+    spec = small(camera=CameraSpec(fov_y_deg=fov_y_deg), objects=[ObjectSpec(class_name="drone", size=size)],
+                 placement=PlacementSpec("frustum", distance=4.0), occlusion=OcclusionSpec(0.0, 1.0, 20))
+    assert (FrameMaker(spec).make(0).depth > 0).any()
+
+
 @pytest.mark.parametrize("text, message", [
     ("cuont = 3", "no 'cuont'.*'count'"),
     ("[camera]\nfov = 3", "no 'fov'.*fov_y_deg"),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
@@ -9,6 +10,13 @@ namespace {
 
 /// The automatic near plane of a view that is moved by hand stays within this part of the target's distance.
 constexpr double near_part = 1e-3;
+
+/// Intrinsics override the setting, which stays in its range for what is looked at without them next.
+float fov_setting_of(const Camera& camera) {
+    if (!camera.intrinsics) return float(camera.fov_y_deg);
+    const Field& setting = field("camera.fov_y_deg");
+    return float(std::clamp(camera.fov_y_deg, setting.min, setting.max));
+}
 
 }  // namespace
 
@@ -26,7 +34,7 @@ void pin_camera(CameraSettings& to, const Camera& camera) {
     // Where the near plane may lie depends on the pose: a path may lead nearer than the first picture was.
     to.near.release();
     to.projection = camera.projection;
-    to.fov_y_deg = float(camera.fov_y_deg);
+    to.fov_y_deg = fov_setting_of(camera);
     to.ortho_height = camera.ortho_height;
     to.intrinsics.clear();
     if (camera.intrinsics) {
