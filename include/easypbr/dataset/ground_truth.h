@@ -85,8 +85,9 @@ struct LayerArray {
 ///   albedo              f32 x 3, linear
 ///   roughness, metallic f32
 ///   instance_id         i32, Instance::id
-///   semantic_id         i32: label of the face or vertex that is seen if the mesh has labels (of the nearest
-///                       corner, where they belong to vertices), else the instance's
+///   semantic_id         i32: label of the face or vertex that is seen if the mesh has labels (where they
+///                       belong to vertices, of a face that of most of its corners, of the first one when
+///                       all differ), else the instance's
 ///   object_coordinates  f32 x 3, NOCS: (p - centre) / diagonal + 0.5 of the instance's box, in its frame; of
 ///                       what is no face and reaches beyond the box, the nearest place in it
 ///   face_id             i32, index in the user's F of the face that is seen; in V of points and surfels, of

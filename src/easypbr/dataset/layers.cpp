@@ -42,10 +42,7 @@ int semantic_id(const Surfaces& s, const InstanceTable& table, const std::vector
     const auto element = Eigen::Index(s.element_of(i));
     if (mesh.L.empty()) return instance_at(s, table, i).semantic_id;
     if (!s.on_face(i)) return of_vertices[s.object[i] - 1](element);
-    if (element_of(mesh, mesh.L.rows()) == PerElement::face) return mesh.L(element);
-    Eigen::Index corner;
-    s.barycentrics[i].maxCoeff(&corner);
-    return mesh.L(mesh.F(element, corner));
+    return face_label(mesh, element);
 }
 
 LayerArray semantic_ids(const Surfaces& s, const InstanceTable& table) {

@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "easypbr/app/channels.h"
 #include "easypbr/app/edits.h"
 #include "easypbr/core/error.h"
+#include "easypbr/scene/element_colors.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
@@ -98,8 +100,14 @@ Place place_of(const MeshData& data, const Eigen::Affine3d& T_world_mesh, const 
     return place;
 }
 
-/// What the arrays say there: scalars of vertices go over a face as they are drawn, its label is the nearest
-/// vertex's.
+std::optional<int32_t> label_at(const MeshData& data, const Place& place) {
+    const auto& rows = place.in(element_of(data, data.L.rows()));
+    if (data.L.empty() || rows.empty()) return {};
+    return place.faces.empty() ? data.L(rows.front().first) : face_label(data, place.faces.front().first);
+}
+
+/// What the arrays say there: scalars of vertices go over a face as they are drawn, its label is that which
+/// it is drawn with.
 json values_at(const MeshData& data, const Place& place) {
     const auto rows_of = [&](Eigen::Index count) {
         auto rows = place.in(element_of(data, count));
@@ -107,11 +115,9 @@ json values_at(const MeshData& data, const Place& place) {
         return rows;
     };
     json values = json::object();
-    if (const auto rows = rows_of(data.L.rows()); !rows.empty()) {
-        const auto nearest = std::ranges::max_element(rows, {}, [](const auto& each) { return each.second; });
-        const int32_t label = data.L(nearest->first);
-        values["label"] = label;
-        const LabelClass* known = data.label_map ? data.label_map->find(label) : nullptr;
+    if (const auto label = label_at(data, place)) {
+        values["label"] = *label;
+        const LabelClass* known = data.label_map ? data.label_map->find(*label) : nullptr;
         if (known) values["class"] = known->name;
     }
     for (const ScalarArray& scalar : data.scalars) {

@@ -38,10 +38,8 @@ int32_t majority(int32_t a, int32_t b, int32_t c) {
 
 Array1i labels_of_faces(const MeshData& mesh) {
     Array1i::Dense labels(mesh.F.rows());
-    parallel_for(size_t(mesh.F.rows()), color_grain, [&](size_t i) {
-        const auto f = mesh.F.row(Eigen::Index(i));
-        labels(Eigen::Index(i)) = majority(mesh.L(f[0]), mesh.L(f[1]), mesh.L(f[2]));
-    });
+    parallel_for(size_t(mesh.F.rows()), color_grain,
+                 [&](size_t i) { labels(Eigen::Index(i)) = face_label(mesh, Eigen::Index(i)); });
     return labels;
 }
 
@@ -112,6 +110,12 @@ Array1f heights(const Array3f& V, const Eigen::Vector4d& height) {
 }
 
 }  // namespace
+
+int32_t face_label(const MeshData& mesh, Eigen::Index face) {
+    if (element_of(mesh, mesh.L.rows()) == PerElement::face) return mesh.L(face);
+    const auto f = mesh.F.row(face);
+    return majority(mesh.L(f[0]), mesh.L(f[1]), mesh.L(f[2]));
+}
 
 Array1i vertex_labels(const MeshData& mesh) {
     return element_of(mesh, mesh.L.rows()) == PerElement::face ? labels_of_vertices(mesh) : mesh.L;

@@ -68,10 +68,14 @@ struct ElementColors {
     Rgba8 nan_color{};
 };
 
-/// Parallel, and the same for any number of threads. Labels of vertices on faces: a face has the label of
-/// most of its corners, the first one's when all differ, so that no colour is a mixture. Values of faces
-/// where vertices are drawn: a vertex has the mean of its faces' values, the label of its first face.
+/// Parallel, and the same for any number of threads. Labels of vertices on faces: see face_label(), so
+/// that no colour is a mixture. Values of faces where vertices are drawn: a vertex has the mean of its faces'
+/// values, the label of its first face.
 ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan);
+
+/// The label of a face of a mesh with labels: its own, else that of most of its corners, the first one's when
+/// all differ. What pictures, ground truth and picks say alike.
+int32_t face_label(const MeshData& mesh, Eigen::Index face);
 
 /// A label for each vertex of a mesh with labels: those of faces as element_colors() hands them on.
 Array1i vertex_labels(const MeshData& mesh);
