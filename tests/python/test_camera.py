@@ -50,6 +50,32 @@ def test_a_k_may_have_any_angle(focal, size):
     np.testing.assert_allclose(depth[24, 32], 2, rtol=1e-6)  # float32
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("shape", [(1, 5), (5, 1), (5,)])
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_distortion_as_opencv_returns_it(shape, dtype):
+    K, k = np.array([[100, 0, 16], [0, 100, 12], [0, 0, 1.0]]), [0.125, 0.25, 0, 0, 0.5]
+    camera = Camera.from_opencv(K, np.eye(4), (32, 24), distortion=np.array(k, dtype).reshape(shape))
+    assert camera.distortion == k  # Each is a float32.
+
+
+@pytest.mark.parametrize("count", [12, 14])
+def test_distortion_of_the_longer_models(count):
+    K, k = np.array([[100, 0, 16], [0, 100, 12], [0, 0, 1.0]]), [0.1, 0.2, 0, 0, 0.3, 0.1, 0.2, 0.4]
+    camera = Camera.from_opencv(K, np.eye(4), (32, 24), distortion=np.array([k + [0] * (count - 8)]))
+    assert camera.distortion == k
+    with pytest.raises(ValueError, match=r"distortion: expected 0 for the coefficients after the eighth: .*thin prisms.*tilted sensors"):
+        Camera.from_opencv(K, np.eye(4), (32, 24), distortion=k + [0] * (count - 9) + [0.1])
+    with pytest.raises(ValueError, match="distortion: expected 4 .*got 12"):
+        Camera.from_opencv(K, np.eye(4), (32, 24), distortion=[0.1] * 4 + [0] * 8, model="fisheye")
+
+
+@pytest.mark.parametrize("wrong, message", [([0.1] * 6, "expected 4, 5 or 8 .*got 6"), ("k1", "distortion: expected"), ({}, "distortion: expected")])
+def test_what_is_no_distortion(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        Camera.from_opencv(np.diag([100, 100, 1.0]), np.eye(4), (32, 24), distortion=wrong)
+
+
 def test_from_opengl_refuses_what_is_no_pose():
     with pytest.raises(ValueError):
         Camera.from_opengl(np.diag([2, 1, 1, 1]))

@@ -19,8 +19,9 @@ struct Distortion {
     /// Brandt 2006): k1 k2 k3 k4. The rest is 0.
     std::array<double, 8> k{};
 
-    /// From 4, 5 or 8 coefficients in OpenCV's order (fisheye: 4). Throws ArgumentError for another number of
-    /// them and for what is not finite.
+    /// From 4, 5 or 8 coefficients in OpenCV's order, or 12 or 14 of which those after the eighth are 0
+    /// (fisheye: 4). Throws ArgumentError for another number of them, for what is not finite, and for the
+    /// thin prisms and tilted sensors that others after the eighth stand for.
     static Distortion from_coefficients(DistortionModel model, const std::vector<double>& coefficients);
     /// As from_coefficients() takes them: as few as hold all that is not 0.
     std::vector<double> coefficients() const;

@@ -1,6 +1,5 @@
 // Camera: poses and projections, in OpenGL's and in OpenCV's axes.
 #include <fmt/format.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
@@ -26,9 +25,15 @@ DistortionModel model_named(const std::string& name) {
     throw ArgumentError(fmt::format("model: expected brown_conrady or fisheye, got '{}'", name));
 }
 
+/// OpenCV's functions return them as n, 1 x n or n x 1.
+std::vector<double> coefficients_of(const nb::object& distortion) {
+    if (distortion.is_none()) return {};
+    const nb::object values = numeric_object(distortion, "distortion").attr("astype")("float64");
+    return nb::cast<std::vector<double>>(values.attr("ravel")().attr("tolist")());
+}
+
 Camera from_opencv(const ArrayLike& K, const ArrayLike& T_world_cam, const ArrayLike& size,
-                   const std::optional<std::vector<double>>& distortion, const std::string& model,
-                   const std::string& axes) {
+                   const nb::object& distortion, const std::string& model, const std::string& axes) {
     const Vec2i pixels = to_size(size, "size");
     Mat4d T = to_matrix4(T_world_cam, "T_world_cam");
     if (same_letters(axes, "opengl"))
@@ -37,8 +42,8 @@ Camera from_opencv(const ArrayLike& K, const ArrayLike& T_world_cam, const Array
         throw ArgumentError(fmt::format("axes: expected opencv or opengl, got '{}'", axes));
     Camera camera = Camera::from_opencv(to_matrix3(K, "K"), T, pixels.x(), pixels.y());
     const DistortionModel known = model_named(model);
-    if (distortion && !distortion->empty())
-        camera.distortion = Distortion::from_coefficients(known, *distortion);
+    const std::vector<double> coefficients = coefficients_of(distortion);
+    if (!coefficients.empty()) camera.distortion = Distortion::from_coefficients(known, coefficients);
     return camera;
 }
 
@@ -65,9 +70,14 @@ void bind_camera_makers(nb::class_<Camera>& camera) {
         .def_static("from_opencv", from_opencv, nb::arg("K"), nb::arg("T_world_cam"), nb::arg("size"),
                     nb::arg("distortion").none() = nb::none(), nb::arg("model") = "brown_conrady",
                     nb::arg("axes") = "opencv",
+                    nb::sig("def from_opencv(K: numpy.typing.ArrayLike, T_world_cam: "
+                            "numpy.typing.ArrayLike, size: numpy.typing.ArrayLike, distortion: "
+                            "numpy.typing.ArrayLike | None = None, model: str = 'brown_conrady', axes: str "
+                            "= 'opencv') -> Camera"),
                     "From OpenCV's K (pixel centres at integers), a camera-to-world pose with OpenCV axes "
                     "(or axes='opengl'), and the (width, height) of K. `distortion`: 4, 5 or 8 coefficients "
-                    "in OpenCV's order; 4 for the model 'fisheye'.")
+                    "in OpenCV's order, in an array of any shape, or 12 or 14 of which those after the "
+                    "eighth are 0; 4 for the model 'fisheye'.")
         .def_static(
             "from_opengl",
             [](const ArrayLike& T, double fov_y_deg) {

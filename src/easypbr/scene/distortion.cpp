@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "easypbr/core/error.h"
 
@@ -92,7 +93,9 @@ Vec2d undistort_brown(const std::array<double, 8>& k, const Vec2d& seen) {
 
 Distortion Distortion::from_coefficients(DistortionModel model, const std::vector<double>& coefficients) {
     const size_t count = coefficients.size();
-    const bool fits = model == DistortionModel::fisheye ? count == 4 : count == 4 || count == 5 || count == 8;
+    const bool is_long = count == 12 || count == 14;
+    const bool fits =
+        model == DistortionModel::fisheye ? count == 4 : count == 4 || count == 5 || count == 8 || is_long;
     if (!fits)
         throw ArgumentError(fmt::format(
             "camera distortion: expected {} coefficients, got {}",
@@ -102,7 +105,14 @@ Distortion Distortion::from_coefficients(DistortionModel model, const std::vecto
         throw ArgumentError("camera distortion: expected finite coefficients");
     Distortion distortion;
     distortion.model = model;
-    std::ranges::copy(coefficients, distortion.k.begin());
+    const auto used = std::span(coefficients).first(std::min(count, distortion.k.size()));
+    const auto rest = std::span(coefficients).subspan(used.size());
+    if (std::ranges::any_of(rest, [](double c) { return c != 0; }))
+        throw ArgumentError(
+            "camera distortion: expected 0 for the coefficients after the eighth: there are no thin prisms "
+            "(s1 "
+            "to s4) and tilted sensors (tx, ty)");
+    std::ranges::copy(used, distortion.k.begin());
     return distortion;
 }
 
