@@ -73,13 +73,13 @@ def inflate(data: bytes, size: int) -> bytes:
 
 
 def read(path) -> dict:
-    """Channel name -> height x width float32."""
+    """Channel name -> height x width, uint32 or float32."""
     data = path.read_bytes()
     attributes, at = header(data)
     channels = channel_list(attributes["channels"])
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
     width, height, rows = x1 - x0 + 1, y1 - y0 + 1, ROWS_PER_BLOCK[attributes["compression"][0]]
-    planes = {name: np.empty((height, width), np.float32) for name, _ in channels}
+    planes = {name: np.empty((height, width), np.uint32 if kind == TYPES[0] else np.float32) for name, kind in channels}
     for offset in struct.unpack_from(f"<{-(-height // rows)}Q", data, at):
         y, size = struct.unpack_from("<ii", data, offset)
         count = min(rows, height - (y - y0))

@@ -34,7 +34,7 @@ def test_ground_truth_is_written_beside_the_picture(render, sphere, tmp_path):
     (instance,) = json.loads((tmp_path / "out_instances.json").read_text())
     assert instance["id"] == 1
     mask = found["instance_id"] == 1
-    assert mask.shape == (48, 64) and (mask == (found["depth"] > 0)).all() and ((found["face_id"] >= 0) == mask).all()
+    assert mask.shape == (48, 64) and (mask == (found["depth"] > 0)).all() and ((found["face_id"].view(np.int32) >= 0) == mask).all()
     assert mask.sum() == instance["pixels_visible"] > 100 and instance["visible_fraction"] == 1
     assert (decoded(instance["rle"]) == mask).all()
     rows, columns = np.nonzero(mask)
@@ -45,6 +45,25 @@ def test_ground_truth_is_written_beside_the_picture(render, sphere, tmp_path):
     assert found["uv"].shape == (48, 64, 3) and (found["uv"][..., 2] == 0).all()  # two channels and an empty one
     corners = np.array(instance["corners_cam"])
     np.testing.assert_allclose(corners.max(0) - corners.min(0), instance["box3d_size"], atol=1e-9)
+
+
+def test_integers_are_exact(render, tmp_path):
+    """Labels that float32 rounds, and a negative one: each of four separate faces has one at all its corners."""
+    labels = [16777217, 19660811, -5, 2147483647]
+    corners = [f"{x} {y} 0" for i in range(4) for x, y in ((i, 0), (i + 1, 0), (i, 1))]
+    header = ["ply", "format ascii 1.0", "element vertex 12", "property float x", "property float y", "property float z",
+              "property int label", "element face 4", "property list uchar int vertex_indices", "end_header"]
+    vertices = [f"{corner} {labels[i // 3]}" for i, corner in enumerate(corners)]
+    faces = [f"3 {3 * i} {3 * i + 1} {3 * i + 2}" for i in range(4)]
+    (tmp_path / "labels.ply").write_text("\n".join([*header, *vertices, *faces, ""]))
+    render(tmp_path / "labels.ply", "-o", "out.png", "--size", "64x48", "--camera-position", "2,0.5,5", "--camera-target", "2,0.5,0",
+           "--layers", "semantic_id,face_id,instance_id")
+    found = {name: exr.read(tmp_path / f"out_{name}.exr")["Y"] for name in ("semantic_id", "face_id", "instance_id")}
+    assert all(values.dtype == np.uint32 for values in found.values())
+    faces, labelled = found["face_id"].view(np.int32), found["semantic_id"].view(np.int32)
+    assert set(faces.ravel()) == {-1, 0, 1, 2, 3}
+    assert (labelled == np.where(faces < 0, 0, np.take(labels, faces))).all()
+    assert (found["instance_id"] == (faces >= 0)).all()
 
 
 def test_instances_behind_the_camera_have_no_pixels(render, sphere, tmp_path):

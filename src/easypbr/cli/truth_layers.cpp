@@ -13,7 +13,7 @@
 #include "easypbr/core/suggest.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/rle.h"
-#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/image_codecs.h"
 #include "easypbr/render/pipeline/renderer.h"
 
 namespace easypbr::cli {
@@ -92,6 +92,13 @@ Image image_of(const dataset::LayerArray& layer) {
     return image;
 }
 
+std::vector<std::byte> exr_of(const dataset::LayerArray& layer) {
+    // float32 has no room for all labels and faces.
+    if (const auto* integers = std::get_if<std::vector<int32_t>>(&layer.values))
+        return io::encode_exr(*integers, {layer.width, layer.height});
+    return io::encode_exr(image_of(layer));
+}
+
 }  // namespace
 
 std::vector<std::string> writable_layers() {
@@ -132,7 +139,7 @@ void write_truth(app::Session& session, const fs::path& picture, const std::vect
     std::vector<std::string> arrays = layers;
     options.instances = std::erase(arrays, instances) > 0;
     const dataset::GroundTruth truth = dataset::ground_truth(session, arrays, options);
-    for (const auto& [name, layer] : truth.layers) io::save_image(image_of(layer), truth_path(picture, name));
+    for (const auto& [name, layer] : truth.layers) write_file(truth_path(picture, name), exr_of(layer));
     if (!options.instances) return;
     json list = json::array();
     for (const dataset::Instance& instance : truth.instances) list.push_back(json_of(instance));

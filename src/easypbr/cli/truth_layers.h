@@ -23,8 +23,9 @@ std::vector<std::string> truth_layers_of(const std::vector<std::string>& names);
 /// Where a layer of a picture is written: OUT_LAYER.exr, instances as OUT_instances.json.
 std::filesystem::path truth_path(const std::filesystem::path& picture, const std::string& layer);
 
-/// Writes each beside the picture: EXR of float32 (ids are exact up to 2^24; two channels are followed by an
-/// empty third), instances as a list in JSON. Throws what dataset::ground_truth() throws, and FileError.
+/// Writes each beside the picture: EXR of float32 (two channels are followed by an empty third), of integers
+/// as UINT (see io::encode_exr), instances as a list in JSON. Throws what dataset::ground_truth() throws, and
+/// FileError.
 void write_truth(app::Session& session, const std::filesystem::path& picture,
                  const std::vector<std::string>& layers);
 

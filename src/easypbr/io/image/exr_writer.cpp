@@ -29,10 +29,44 @@ std::vector<std::vector<float>> planes_of(const Image& image, const std::vector<
     return planes;
 }
 
+/// Planes of 32-bit samples with the names of their channels, which the format sorts by name.
+struct ExrPlanes {
+    Vec2i size;
+    int type;  ///< of tinyexr
+    std::vector<const char*> names;
+    std::vector<unsigned char*> samples;
+};
+
+std::vector<std::byte> encode_planes(ExrPlanes planes) {
+    std::vector<EXRChannelInfo> infos(planes.names.size());
+    for (size_t c = 0; c < infos.size(); ++c) std::strcpy(infos[c].name, planes.names[c]);
+    std::vector<int> types(infos.size(), planes.type);
+
+    EXRHeader header;
+    InitEXRHeader(&header);
+    header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
+    header.num_channels = int(infos.size());
+    header.channels = infos.data();
+    header.pixel_types = header.requested_pixel_types = types.data();
+    EXRImage picture;
+    InitEXRImage(&picture);
+    picture.images = planes.samples.data();
+    picture.width = planes.size.x();
+    picture.height = planes.size.y();
+    picture.num_channels = int(infos.size());
+
+    unsigned char* buffer = nullptr;
+    const char* message = nullptr;
+    const size_t size = SaveEXRImageToMemory(&picture, &header, &buffer, &message);
+    const std::unique_ptr<unsigned char, decltype(&std::free)> owner(buffer, std::free);
+    check_exr_encode(size > 0, message);
+    const auto* begin = reinterpret_cast<const std::byte*>(buffer);
+    return {begin, begin + size};
+}
+
 }  // namespace
 
 std::vector<std::byte> encode_exr(const Image& image) {
-    // The format sorts channels by name.
     struct Channels {
         std::vector<const char*> names;
         std::vector<int> indices;
@@ -43,33 +77,15 @@ std::vector<std::byte> encode_exr(const Image& image) {
                                        {{"A", "B", "G", "R"}, {3, 2, 1, 0}}};
     const Channels& channels = layouts[image.channels() - 1];
     std::vector<std::vector<float>> planes = planes_of(image, channels.indices);
-    std::vector<unsigned char*> pointers;
+    std::vector<unsigned char*> samples;
     for (std::vector<float>& plane : planes)
-        pointers.push_back(reinterpret_cast<unsigned char*>(plane.data()));
-    std::vector<EXRChannelInfo> infos(planes.size());
-    for (size_t c = 0; c < infos.size(); ++c) std::strcpy(infos[c].name, channels.names[c]);
-    std::vector<int> types(planes.size(), TINYEXR_PIXELTYPE_FLOAT);
+        samples.push_back(reinterpret_cast<unsigned char*>(plane.data()));
+    return encode_planes({{image.width(), image.height()}, TINYEXR_PIXELTYPE_FLOAT, channels.names, samples});
+}
 
-    EXRHeader header;
-    InitEXRHeader(&header);
-    header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
-    header.num_channels = image.channels();
-    header.channels = infos.data();
-    header.pixel_types = header.requested_pixel_types = types.data();
-    EXRImage picture;
-    InitEXRImage(&picture);
-    picture.images = pointers.data();
-    picture.width = image.width();
-    picture.height = image.height();
-    picture.num_channels = image.channels();
-
-    unsigned char* buffer = nullptr;
-    const char* message = nullptr;
-    const size_t size = SaveEXRImageToMemory(&picture, &header, &buffer, &message);
-    const std::unique_ptr<unsigned char, decltype(&std::free)> owner(buffer, std::free);
-    check_exr_encode(size > 0, message);
-    const auto* begin = reinterpret_cast<const std::byte*>(buffer);
-    return {begin, begin + size};
+std::vector<std::byte> encode_exr(std::vector<int32_t> values, Vec2i size) {
+    return encode_planes(
+        {size, TINYEXR_PIXELTYPE_UINT, {"Y"}, {reinterpret_cast<unsigned char*>(values.data())}});
 }
 
 }  // namespace easypbr::io

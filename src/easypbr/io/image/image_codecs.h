@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "easypbr/core/image.h"
+#include "easypbr/core/math.h"
 
 namespace easypbr::io {
 
@@ -39,6 +41,9 @@ std::vector<std::byte> encode_webp(const Image& image, int quality);
 std::vector<std::byte> encode_hdr(const Image& image);
 /// float32 channels, ZIP-compressed scanlines. f32 only.
 std::vector<std::byte> encode_exr(const Image& image);
+/// Whole numbers, one to a pixel, row 0 on top: one channel Y of EXR's only integer type, UINT of 32 bits. A
+/// negative one is stored as its two's complement, -1 as 4294967295.
+std::vector<std::byte> encode_exr(std::vector<int32_t> values, Vec2i size);
 /// What save_image() writes into a file with one of writable_image_extensions().
 std::vector<std::byte> encode_image(const Image& image, const std::filesystem::path& path);
 
