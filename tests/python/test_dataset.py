@@ -276,6 +276,17 @@ def test_objects_that_cannot_be_seen_are_named(changes, message):
         FrameMaker(small(occlusion=OcclusionSpec(0.0, 1.0, 3), **changes)).make(0)
 
 
+def test_lines_are_in_no_layer(tmp_path):
+    lines = easypbr.Mesh()
+    lines.V, lines.E = np.eye(3), np.array([[0, 1], [1, 2]])
+    lines.save(tmp_path / "lines.ply")
+    source = ObjectSpec(str(tmp_path / "lines.ply"), class_name="wire")
+    with pytest.raises(ArgumentError, match="20 tries: a 'wire' has lines alone, which are in no layer: .*distractor.*--tubes"):
+        FrameMaker(small(objects=[source])).make(0)
+    source.distractor = True
+    assert FrameMaker(small(objects=[source, ObjectSpec(class_name="drone")])).make(0).depth.any()
+
+
 @pytest.mark.parametrize("fov_y_deg, size", [(0.001, 2e-5), (0.5, 0.01), (175.0, 6.0), (179.0, 30.0)])
 def test_lenses_of_every_angle(fov_y_deg, size):
     """Wider and narrower than the setting camera.fov_y_deg takes: a data set's cameras have a K."""

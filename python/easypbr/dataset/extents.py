@@ -40,6 +40,12 @@ def _nodes(mesh: Mesh) -> Iterator[Mesh]:
         yield from _nodes(child)
 
 
+def is_lines(mesh: Mesh) -> bool:
+    """Whether a mesh with its children is drawn as nothing but lines."""
+    shown = [node for node in _nodes(mesh) if len(node.V)]
+    return bool(shown) and all(len(node.E) and not len(node.F) for node in shown)
+
+
 def _move_offsets(mesh: Mesh, moved: NDArray[Any], origin: NDArray[Any]) -> None:
     """Moves the offsets of all children into their poses; the mesh itself stands `moved` from its own origin."""
     for child in mesh.children:

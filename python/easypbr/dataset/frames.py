@@ -11,7 +11,7 @@ from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
 from . import content
-from .extents import bounds, diameter_of, fitted, least_along, vertices_of, without_offset
+from .extents import bounds, diameter_of, fitted, is_lines, least_along, vertices_of, without_offset
 from .frame import Frame, NextFrame, visible_corners
 from .kept import Kept, bytes_of
 from .lamps import random_light
@@ -100,6 +100,9 @@ class FrameMaker:
     def _what_fails(self, instance: Instance, entry: ObjectSpec) -> str:
         """Which constraint an object does not meet, and what helps; empty when it meets all."""
         limit, placement = self.spec.occlusion, self.spec.placement
+        if not instance.pixels_visible and is_lines(self._scene.get(instance.name)):
+            return (f"a '{entry.name()}' has lines alone, which are in no layer: make it a distractor, or tubes of its lines with "
+                    "mesh.to_tubes() or `easypbr convert --tubes RADIUS`")
         if not instance.pixels_visible:
             key = "placement.distance" if placement.mode == "frustum" else "placement.radius"
             others = ", or make surroundings.size larger" if self.spec.surroundings.source else ""
