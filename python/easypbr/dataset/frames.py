@@ -101,8 +101,8 @@ class FrameMaker:
         """Which constraint an object does not meet, and what helps; empty when it meets all."""
         limit, placement = self.spec.occlusion, self.spec.placement
         if not instance.pixels_visible and is_lines(self._scene.get(instance.name)):
-            return (f"a '{entry.name()}' has lines alone, which are in no layer: make it a distractor, or tubes of its lines with "
-                    "mesh.to_tubes() or `easypbr convert --tubes RADIUS`")
+            return (f"a '{entry.name()}' has lines alone, which are in no layer: make it a distractor, or tubes of its "
+                    "lines with mesh.to_tubes() or `easypbr convert --tubes RADIUS`")
         if not instance.pixels_visible:
             key = "placement.distance" if placement.mode == "frustum" else "placement.radius"
             others = ", or make surroundings.size larger" if self.spec.surroundings.source else ""
