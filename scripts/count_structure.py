@@ -15,8 +15,13 @@ MOST_CONDITIONS = 60
 CONDITION = re.compile(r"\s*#\s*if")
 INCLUDE = re.compile(r'\s*#\s*include\s+["<]([^">]+)[">]')
 GL_CALL = re.compile(r"\bgl[A-Z]\w+\(")
+#: What goes by the program's locale: letters, numbers with a decimal comma.
+OF_LOCALE = re.compile(r"#\s*include\s*<(?:cctype|ctype\.h|cwctype|regex)>|\b(?:to(?:lower|upper)|is(?:alnum|alpha|blank|cntrl|digit"
+                       r"|graph|lower|print|punct|space|upper|xdigit)|strn?casecmp|strto(?:d|f|ld)|ato(?:f|i|ll?)|sto(?:d|f|ld)|v?s?scanf)"
+                       r"(?=[(,)])")
 UNIFORM_BY_NAME = re.compile(r'\.set\(\s*"u_')
 BLOCK = re.compile(r"^\s*layout\(std(?:140|430)[^)]*\)\s*(?:uniform|buffer)\s+(\w+)", re.MULTILINE)
+COMMENT = re.compile(r"//[^\n]*")
 CLASSES = {"Renderer": "render/pipeline/renderer.h", "Frame": "render/frame/frame.h", "Session": "app/session.h"}
 
 
@@ -198,11 +203,14 @@ def frame_lines(root: pathlib.Path) -> int:
 
 
 def code_faults(root: pathlib.Path) -> Iterator[str]:
-    """Where the code breaks a bound: OpenGL outside the rooms that own it, a frame that does not fit a screen."""
+    """Where the code breaks a bound: OpenGL outside the rooms that own it, a function that goes by the locale, a frame that
+    does not fit a screen."""
     for name, text in sources(root).items():
         if not name.startswith(("gl/", "gui/imgui_renderer", "gui/window")):
             for call in GL_CALL.findall(text):
                 yield f"src/easypbr/{name}: calls {call[:-1]}(): expected a function of gl/"
+        for found in OF_LOCALE.findall(COMMENT.sub("", text)):
+            yield f"src/easypbr/{name}: {found} goes by the locale: expected core/ascii.h, from_chars() or io/source/text_scanner.h"
     if len(names := naming(root, "surfel")) > MOST_NAMING_A_KIND:
         yield f"src/easypbr: {len(names)} files name surfels; expected at most {MOST_NAMING_A_KIND}: {', '.join(names)}"
     if frame_lines(root) > LONGEST_FRAME:

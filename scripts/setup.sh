@@ -21,7 +21,7 @@ if [ "${1:-}" = list ]; then
   exit
 fi
 if [ "${1:-}" = tests ]; then
-  packages+=(clang-14 libclang-rt-14-dev clang-format clang-tidy ffmpeg xvfb openbox xdotool x11-xkb-utils wmctrl xclip python3-torch groff-base zsh fish chromium debootstrap nginx-light
+  packages+=(clang-14 libclang-rt-14-dev clang-format clang-tidy ffmpeg xvfb openbox xdotool x11-xkb-utils wmctrl xclip python3-torch groff-base zsh fish chromium debootstrap nginx-light locales
     doxygen abigail-tools valgrind glslang-tools spirv-tools mesa-vulkan-drivers g++-aarch64-linux-gnu qemu-user)
   # The page is built again by a test; Node may come from elsewhere.
   command -v npm >/dev/null || packages+=(nodejs npm)

@@ -39,6 +39,19 @@ def test_opengl_outside_its_rooms_and_a_long_frame(tmp_path):
         f"render/pipeline/pipeline.cpp: the frame has {bound + 1} lines; expected at most {bound}"]
 
 
+def test_functions_that_go_by_the_locale(tmp_path):
+    lines = ["#include <cctype>", "x = std::tolower(c);", "x = ::toupper(c);", "transform(a, b, std::tolower);", "isdigit(c);",
+             'std::sscanf(line, "%lf", &x);', "std::stod(text);"]
+    fine = ["// std::tolower(c)", "ascii::to_lower(c);", "ascii::is_digit(c);", "is_space(c);", "from_chars(a, b, x);"]
+    frame = tmp_path / "src/easypbr/render/pipeline/pipeline.cpp"
+    frame.parent.mkdir(parents=True)
+    frame.write_text("LitPicture Pipeline::draw(\n}\n")
+    (tmp_path / "src/easypbr/a.cpp").write_text("\n".join(lines + fine))
+    names = ["#include <cctype>", "tolower", "toupper", "tolower", "isdigit", "sscanf", "stod"]
+    assert [line.split(" goes by the locale")[0] for line in count_structure.code_faults(tmp_path)] == [
+        f"src/easypbr/a.cpp: {name}" for name in names]
+
+
 def test_a_kind_of_primitive_is_named_by_the_list_of_all_kinds_alone():
     lines = "render/primitives/lines/line_primitive"
     assert check_includes.fault("render/primitives/primitives.cpp", lines) is None

@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <mutex>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
@@ -29,7 +30,7 @@ std::optional<Number> number_in(const std::string& name) {
     const size_t begin = name.find('%');
     if (begin == name.npos) return {};
     size_t end = begin + 1;
-    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+    while (end < name.size() && ascii::is_digit(name[end])) ++end;
     const std::string digits = name.substr(begin + 1, end - begin - 1);
     if (end == name.size() || name[end] != 'd' || digits.size() > 3 || name.find('%', end) != name.npos)
         return {};

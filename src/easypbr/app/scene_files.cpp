@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "easypbr/app/output.h"
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/opened_files.h"
@@ -51,8 +51,8 @@ bool is_missing_light(const Scene& scene, const std::string& light) {
 
 /// A word of a POSIX shell's command line.
 std::string shell_word(const std::string& text) {
-    const auto is_plain = [](unsigned char c) {
-        return std::isalnum(c) || std::string_view("_@%+=:,./-").find(char(c)) != std::string_view::npos;
+    const auto is_plain = [](char c) {
+        return ascii::is_alnum(c) || std::string_view("_@%+=:,./-").find(c) != std::string_view::npos;
     };
     if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
     std::string word = "'";

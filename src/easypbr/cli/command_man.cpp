@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/command_table.h"
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
 
@@ -72,12 +72,10 @@ std::string commands_section(const std::vector<CommandRow>& table) {
 std::string page_of(const CommandRow& command, const std::vector<CommandRow>& table) {
     const CommandRow& program = table.front();
     const std::string name = page_name(command, program);
-    std::string upper = name;
-    std::ranges::transform(upper, upper.begin(),
-                           [](char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; });
     std::string text = fmt::format(
         ".TH \"{}\" 1 \"\" \"EasyPBR {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}",
-        troff(upper), EASYPBR_VERSION, troff(name), troff(command.help), synopsis(command, program));
+        troff(ascii::to_upper(name)), EASYPBR_VERSION, troff(name), troff(command.help),
+        synopsis(command, program));
     if (&command == &program) text += commands_section(table);
     if (!command.arguments.empty()) {
         text += ".SH ARGUMENTS\n";

@@ -9,6 +9,7 @@
 #include "easypbr/cli/parse_errors.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/truth_layers.h"
+#include "easypbr/core/ascii.h"
 #include "easypbr/io/settings/presets.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/label_map.h"
@@ -35,7 +36,7 @@ std::vector<std::string> placeholder_values(const std::string& placeholder) {
     std::vector<std::string> values;
     std::istringstream list(placeholder);
     for (std::string value; std::getline(list, value, '|');)
-        if (std::ranges::all_of(value, [](char c) { return c >= 'a' && c <= 'z'; })) values.push_back(value);
+        if (std::ranges::all_of(value, ascii::is_lower)) values.push_back(value);
     return values;
 }
 

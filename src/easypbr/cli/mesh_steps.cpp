@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
@@ -242,7 +243,7 @@ std::string message_of(const MeshStep& step, std::string_view message) {
     const size_t colon = message.find(": ");
     const std::string_view first = message.substr(0, colon);
     const bool is_function = colon != message.npos && std::ranges::all_of(first, [](char c) {
-                                 return (c >= 'a' && c <= 'z') || c == '_';
+                                 return ascii::is_lower(c) || c == '_';
                              });
     return fmt::format("{}: {}", step.option, is_function ? message.substr(colon + 2) : message);
 }

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <utility>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/folder.h"
 #include "easypbr/core/open_file.h"
@@ -187,9 +188,7 @@ void FileBytes::release_until(size_t end) const {
 std::string extension_of(const fs::path& path) {
     std::string extension = path.extension().string();
     if (!extension.empty()) extension.erase(0, 1);
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
+    return ascii::to_lower(extension);
 }
 
 }  // namespace easypbr

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
+
+#include "easypbr/core/ascii.h"
 
 namespace easypbr {
 namespace {
@@ -166,8 +167,7 @@ constexpr NamedColor colors[] = {{"aliceblue", 0xf0f8ff},
 }  // namespace
 
 std::optional<unsigned> named_color(std::string_view name) {
-    std::string lower(name);
-    for (char& letter : lower) letter = char(std::tolower(static_cast<unsigned char>(letter)));
+    const std::string lower = ascii::to_lower(name);
     const auto* found =
         std::lower_bound(std::begin(colors), std::end(colors), lower,
                          [](const NamedColor& color, const std::string& key) { return color.name < key; });

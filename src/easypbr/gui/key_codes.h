@@ -2,11 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <string_view>
 
 #include "easypbr/app/input.h"
+#include "easypbr/core/ascii.h"
 
 namespace easypbr::gui {
 
@@ -55,10 +55,9 @@ class KeyCodes {
     static bool flies(int code) { return std::ranges::count(std::string_view("WASDQE"), code) > 0; }
     static int code(int key, const char* name, int modifiers) {
         constexpr int control = 2;
-        const bool is_letter =
-            name && name[0] != 0 && name[1] == 0 && std::isalpha(static_cast<unsigned char>(name[0]));
+        const bool is_letter = name && ascii::is_alpha(name[0]) && name[1] == 0;
         if (!is_letter) return without_keypad(key, modifiers);
-        const int letter = std::toupper(static_cast<unsigned char>(name[0]));
+        const int letter = ascii::to_upper(name[0]);
         return !(modifiers & control) && (flies(key) || flies(letter)) ? key : letter;
     }
 

@@ -5,6 +5,7 @@
 
 #include "easypbr/app/camera_text.h"
 #include "easypbr/app/channels.h"
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
@@ -26,7 +27,7 @@ std::string title_of(const std::string& group) {
         {"style", "All styles"}};
     if (const auto known = titles.find(group); known != titles.end()) return known->second;
     std::string title = readable(group);
-    title[0] = char(std::toupper(static_cast<unsigned char>(title[0])));
+    title[0] = ascii::to_upper(title[0]);
     return title;
 }
 

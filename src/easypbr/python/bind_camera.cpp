@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/camera.h"
@@ -20,8 +20,8 @@ Camera look_at(const ArrayLike& position, const ArrayLike& target, const nb::obj
 }
 
 DistortionModel model_named(const std::string& name) {
-    if (same_letters(name, "brown_conrady")) return DistortionModel::brown_conrady;
-    if (same_letters(name, "fisheye")) return DistortionModel::fisheye;
+    if (ascii::same_letters(name, "brown_conrady")) return DistortionModel::brown_conrady;
+    if (ascii::same_letters(name, "fisheye")) return DistortionModel::fisheye;
     throw ArgumentError(fmt::format("model: expected brown_conrady or fisheye, got '{}'", name));
 }
 
@@ -36,9 +36,9 @@ Camera from_opencv(const ArrayLike& K, const ArrayLike& T_world_cam, const Array
                    const nb::object& distortion, const std::string& model, const std::string& axes) {
     const Vec2i pixels = to_size(size, "size");
     Mat4d T = to_matrix4(T_world_cam, "T_world_cam");
-    if (same_letters(axes, "opengl"))
+    if (ascii::same_letters(axes, "opengl"))
         T.topLeftCorner<3, 3>() *= Vec3d(1, -1, -1).asDiagonal();
-    else if (!same_letters(axes, "opencv"))
+    else if (!ascii::same_letters(axes, "opencv"))
         throw ArgumentError(fmt::format("axes: expected opencv or opengl, got '{}'", axes));
     Camera camera = Camera::from_opencv(to_matrix3(K, "K"), T, pixels.x(), pixels.y());
     const DistortionModel known = model_named(model);
@@ -53,8 +53,8 @@ void set_pose(Camera& camera, const ArrayLike& T_world_cam) {
 }
 
 void set_projection(Camera& camera, const std::string& name) {
-    const bool is_perspective = same_letters(name, "perspective");
-    if (!is_perspective && !same_letters(name, "orthographic"))
+    const bool is_perspective = ascii::same_letters(name, "perspective");
+    if (!is_perspective && !ascii::same_letters(name, "orthographic"))
         throw ArgumentError(
             fmt::format("camera.projection: expected perspective or orthographic, got '{}'", name));
     camera.projection = is_perspective ? Projection::perspective : Projection::orthographic;

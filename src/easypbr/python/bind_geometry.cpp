@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
@@ -61,7 +61,7 @@ Choice chosen(const char* what, const std::string& name,
               const std::vector<std::pair<std::string, Choice>>& choices) {
     std::vector<std::string> names;
     for (const auto& [known, choice] : choices) {
-        if (same_letters(known, name)) return choice;
+        if (ascii::same_letters(known, name)) return choice;
         names.push_back(known);
     }
     throw ArgumentError(std::string(what) + ": expected '" + names[0] + "' or '" + names[1] + "', got '" +

@@ -4,9 +4,9 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/python/colormap.h"
 #include "easypbr/python/convert.h"
@@ -88,8 +88,8 @@ std::vector<LabelClass> classes_from(nb::handle names, const std::optional<std::
 }
 
 UnknownLabels unknown_from(const std::string& text) {
-    if (same_letters(text, "refused")) return UnknownLabels::refused;
-    if (same_letters(text, "unlabelled")) return UnknownLabels::unlabelled;
+    if (ascii::same_letters(text, "refused")) return UnknownLabels::refused;
+    if (ascii::same_letters(text, "unlabelled")) return UnknownLabels::unlabelled;
     throw ArgumentError(fmt::format("LabelMap unknown: expected 'refused' or 'unlabelled', got '{}'", text));
 }
 

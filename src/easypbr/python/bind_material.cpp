@@ -3,8 +3,8 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
@@ -85,7 +85,7 @@ void set_alpha_mode(MaterialHandle& m, const std::string& mode) {
                               {"mask", AlphaMode::mask},
                               {"blend", AlphaMode::blend}};
     for (const Choice& choice : choices)
-        if (same_letters(choice.first, mode))
+        if (ascii::same_letters(choice.first, mode))
             return m.change([&](Material& own) { own.alpha_mode = choice.second; });
     throw ArgumentError(
         fmt::format("material.alpha_mode: expected auto, opaque, mask or blend, got '{}'", mode));

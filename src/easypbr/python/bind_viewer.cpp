@@ -6,9 +6,9 @@
 
 #include "easypbr/app/output.h"
 #include "easypbr/app/scene_files.h"
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/settings_io.h"
@@ -22,9 +22,9 @@ namespace easypbr::python {
 namespace {
 
 app::Encoding encoding_named(const std::string& name) {
-    if (same_letters(name, "srgb8")) return app::Encoding::srgb8;
-    if (same_letters(name, "srgb16")) return app::Encoding::srgb16;
-    if (same_letters(name, "linear")) return app::Encoding::scene_linear;
+    if (ascii::same_letters(name, "srgb8")) return app::Encoding::srgb8;
+    if (ascii::same_letters(name, "srgb16")) return app::Encoding::srgb16;
+    if (ascii::same_letters(name, "linear")) return app::Encoding::scene_linear;
     throw ArgumentError("encoding: expected srgb8, srgb16 or linear, got '" + name + "'");
 }
 

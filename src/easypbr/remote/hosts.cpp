@@ -6,9 +6,9 @@
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <cctype>
 #include <memory>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 
 namespace easypbr::remote {
@@ -16,15 +16,8 @@ namespace {
 
 constexpr size_t longest_name = 253;
 
-std::string lower(std::string_view text) {
-    std::string out(text);
-    std::ranges::transform(out, out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return out;
-}
-
 bool is_port(std::string_view text) {
-    return !text.empty() && text.size() <= 5 &&
-           std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+    return !text.empty() && text.size() <= 5 && std::ranges::all_of(text, ascii::is_digit);
 }
 
 /// "name" of "name", "name:port", "[::1]" and "[::1]:port"; empty for what is none of these.
@@ -35,16 +28,16 @@ std::string name_of(std::string_view host) {
         if (end == host.npos) return {};
         const std::string_view rest = host.substr(end + 1);
         if (!rest.empty() && !(rest[0] == ':' && is_port(rest.substr(1)))) return {};
-        return lower(host.substr(1, end - 1));
+        return ascii::to_lower(host.substr(1, end - 1));
     }
     const size_t colon = host.find(':');
-    if (colon == host.npos) return lower(host);
-    return is_port(host.substr(colon + 1)) ? lower(host.substr(0, colon)) : std::string();
+    if (colon == host.npos) return ascii::to_lower(host);
+    return is_port(host.substr(colon + 1)) ? ascii::to_lower(host.substr(0, colon)) : std::string();
 }
 
 bool is_name(std::string_view name) {
-    const auto fits = [](unsigned char c) {
-        return std::isalnum(c) || c == '-' || c == '.' || c == ':' || c == '_';
+    const auto fits = [](char c) {
+        return ascii::is_alnum(c) || c == '-' || c == '.' || c == ':' || c == '_';
     };
     return !name.empty() && name.size() <= longest_name && std::ranges::all_of(name, fits);
 }
@@ -57,7 +50,7 @@ std::string_view host_of(std::string_view origin) {
 }
 
 std::string checked_origin(std::string origin) {
-    origin = lower(origin);
+    origin = ascii::to_lower(origin);
     if (!is_name(name_of(host_of(origin))))
         throw ArgumentError(
             fmt::format("origin '{}': expected such as https://hub.example.org, without a path", origin));
@@ -93,7 +86,7 @@ std::vector<std::string> addresses_of(const std::string& bind) {
 }
 
 bool is_loopback(std::string_view name) {
-    const auto digits_and_dots = [](unsigned char c) { return std::isdigit(c) || c == '.'; };
+    const auto digits_and_dots = [](char c) { return ascii::is_digit(c) || c == '.'; };
     return name == "localhost" || name == "::1" ||
            (name.starts_with("127.") && std::ranges::count(name, '.') == 3 &&
             std::ranges::all_of(name, digits_and_dots));
@@ -101,13 +94,13 @@ bool is_loopback(std::string_view name) {
 
 HostRules::HostRules(const std::string& bind, const std::vector<std::string>& names,
                      const std::vector<std::string>& origins) {
-    if (!bind.empty()) names_.push_back(lower(bind));
+    if (!bind.empty()) names_.push_back(ascii::to_lower(bind));
     // No name of somebody else's resolves to an address that the browser was given as such.
-    for (const std::string& address : addresses_of(bind)) names_.push_back(lower(address));
+    for (const std::string& address : addresses_of(bind)) names_.push_back(ascii::to_lower(address));
     for (const std::string& name : names) {
         if (!is_name(name) || name_of(name.find(':') == name.npos ? name : "[" + name + "]").empty())
             throw ArgumentError(fmt::format("host name '{}': expected a name without a port", name));
-        names_.push_back(lower(name));
+        names_.push_back(ascii::to_lower(name));
     }
     for (const std::string& origin : origins) origins_.push_back(checked_origin(origin));
 }
@@ -119,10 +112,10 @@ bool HostRules::allows_host(std::string_view host) const {
 
 bool HostRules::allows_origin(std::string_view origin, std::string_view host) const {
     if (origin.empty()) return true;
-    const std::string given = lower(origin);
+    const std::string given = ascii::to_lower(origin);
     if (std::ranges::find(origins_, given) != origins_.end()) return true;
     const std::string_view own = host_of(given);
-    return allows_host(own) && own == lower(host);
+    return allows_host(own) && own == ascii::to_lower(host);
 }
 
 }  // namespace easypbr::remote

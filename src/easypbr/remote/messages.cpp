@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "easypbr/core/ascii.h"
 
 namespace easypbr::remote {
 namespace {
@@ -98,8 +99,7 @@ int key_of(Members& members) {
     static const std::map<std::string, int> others = {
         {"space", app::key::space}, {"escape", app::key::escape}, {"enter", app::key::enter}};
     const std::string name = members.text("key", name_length);
-    const bool plain =
-        name.size() == 1 && ((name[0] >= 'A' && name[0] <= 'Z') || (name[0] >= '0' && name[0] <= '9'));
+    const bool plain = name.size() == 1 && (ascii::is_upper(name[0]) || ascii::is_digit(name[0]));
     if (plain) return name[0];
     const auto found = others.find(name);
     if (found == others.end())

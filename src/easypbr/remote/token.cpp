@@ -10,6 +10,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 
@@ -19,10 +20,7 @@ namespace {
 constexpr size_t least_length = 32, most_length = 128;
 
 bool is_token(std::string_view text) {
-    const auto is_plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-               c == '-';
-    };
+    const auto is_plain = [](char c) { return ascii::is_alnum(c) || c == '_' || c == '-'; };
     return text.size() >= least_length && text.size() <= most_length && std::ranges::all_of(text, is_plain);
 }
 

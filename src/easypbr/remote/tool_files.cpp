@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "easypbr/app/scene_files.h"
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/interrupt.h"
 #include "easypbr/remote/served_files.h"
 #include "easypbr/remote/tool_panels.h"
@@ -26,7 +26,7 @@ std::string size_text(uint64_t bytes) {
 
 /// Whether a name has a part, small letters or large.
 bool has_part(const std::string& name, const std::string& part) {
-    const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+    const auto same = [](char a, char b) { return ascii::to_lower(a) == ascii::to_lower(b); };
     return std::search(name.begin(), name.end(), part.begin(), part.end(), same) != name.end() ||
            part.empty();
 }

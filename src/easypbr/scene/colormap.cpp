@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr {
@@ -179,7 +179,7 @@ std::string Colormap::text() const {
 Colormap parse_colormap(std::string_view text) {
     const auto& names = colormap_names();
     const auto found =
-        std::ranges::find_if(names, [&](const auto& name) { return same_letters(name, text); });
+        std::ranges::find_if(names, [&](const auto& name) { return ascii::same_letters(name, text); });
     if (found != names.end()) {
         const size_t place = size_t(found - names.begin()), count = built_in_names.size();
         const Colormap map{uint8_t(place % count)};

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <map>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/letter_case.h"
 #include "easypbr/core/named_colors.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/colormap.h"
@@ -234,7 +234,7 @@ bool is_allowed(const FieldInfo& field, const Value::Data& data) {
 /// A choice in any case: F3D writes axes as +Z.
 std::string spelled_as_chosen(const FieldInfo& field, const std::string& text) {
     for (const std::string& choice : field.choices)
-        if (same_letters(choice, text)) return choice;
+        if (ascii::same_letters(choice, text)) return choice;
     return text;
 }
 

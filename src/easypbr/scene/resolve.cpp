@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/auto_parameters.h"
@@ -245,8 +246,7 @@ void release(Settings& settings) {
 
 Vec3d parse_up(const std::string& up) {
     const bool has_sign = !up.empty() && (up[0] == '+' || up[0] == '-');
-    std::string axis = has_sign ? up.substr(1) : up;
-    for (char& letter : axis) letter = char(std::tolower(static_cast<unsigned char>(letter)));
+    const std::string axis = ascii::to_lower(has_sign ? up.substr(1) : up);
     const double sign = has_sign && up[0] == '-' ? -1 : 1;
     if (axis == "x") return Vec3d(sign, 0, 0);
     if (axis == "y") return Vec3d(0, sign, 0);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "easypbr/core/ascii.h"
+
 namespace easypbr {
 namespace {
 
@@ -443,7 +445,7 @@ constexpr Synonym synonym_table[] = {
 std::string plain_word(std::string_view word) {
     while (word.starts_with('-')) word.remove_prefix(1);
     std::string text(word);
-    for (char& c : text) c = c == '-' || c == ' ' ? '_' : c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+    for (char& c : text) c = c == '-' || c == ' ' ? '_' : ascii::to_lower(c);
     return text;
 }
 

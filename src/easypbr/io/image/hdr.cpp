@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
+#include <span>
 #include <string_view>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_codecs.h"
+#include "easypbr/io/source/text_scanner.h"
 
 namespace easypbr::io {
 namespace {
@@ -30,9 +32,8 @@ class HeaderReader {
 
     HdrHeader read() {
         next_line();
-        for (std::string_view line = next_line(); !line.empty(); line = next_line())
-            variable(std::string(line));
-        resolution(std::string(next_line()));
+        for (std::string_view line = next_line(); !line.empty(); line = next_line()) variable(line);
+        resolution(next_line());
         header_.data = at_;
         return header_;
     }
@@ -48,14 +49,21 @@ class HeaderReader {
         return line;
     }
 
-    void variable(const std::string& line) {
-        if (line.starts_with("FORMAT=") && line.find("32-bit_rle_rgbe") == std::string::npos)
+    /// Whether a line is "NAME=" and as many numbers as there are values.
+    static bool read_values(std::string_view line, std::string_view name, std::span<double> values) {
+        if (!line.starts_with(name)) return false;
+        const char *p = line.data() + name.size(), *end = line.data() + line.size();
+        return std::ranges::all_of(values, [&](double& value) { return read_number(p, end, value); });
+    }
+
+    void variable(std::string_view line) {
+        if (line.starts_with("FORMAT=") && line.find("32-bit_rle_rgbe") == std::string_view::npos)
             fail_image(name_, fmt::format("HDR with '{}': only FORMAT=32-bit_rle_rgbe is read", line));
-        double value[3];
-        if (std::sscanf(line.c_str(), "EXPOSURE=%lf", value) == 1)
+        std::array<double, 3> value{};
+        if (read_values(line, "EXPOSURE=", {value.data(), 1}))
             divide({value[0], value[0], value[0]});
-        else if (std::sscanf(line.c_str(), "COLORCORR=%lf %lf %lf", value, value + 1, value + 2) == 3)
-            divide({value[0], value[1], value[2]});
+        else if (read_values(line, "COLORCORR=", value))
+            divide(value);
     }
 
     /// Some writers put EXPOSURE=0 where they mean none: a factor that is no positive number counts as 1.
@@ -64,11 +72,21 @@ class HeaderReader {
             if (factor[c] > 1e-30 && factor[c] < 1e30) header_.divisor[c] *= factor[c];
     }
 
-    void resolution(const std::string& line) {
-        char sign[2], axis[2];
-        long long size[2];
-        if (std::sscanf(line.c_str(), "%c%c %lld %c%c %lld", &sign[0], &axis[0], &size[0], &sign[1], &axis[1],
-                        &size[1]) != 6)
+    /// An axis with its sign and size, "-Y 512"; moves `p` behind it. False if there is none.
+    static bool read_side(const char*& p, const char* end, char& sign, char& axis, int64_t& size) {
+        if (end - p < 2) return false;
+        sign = *p++;
+        axis = *p++;
+        const auto number = std::from_chars(skip_blanks(p, end), end, size);
+        p = skip_blanks(number.ptr, end);
+        return number.ec == std::errc();
+    }
+
+    void resolution(std::string_view line) {
+        char sign[2]{}, axis[2]{};
+        int64_t size[2]{};
+        const char *p = line.data(), *end = p + line.size();
+        if (!read_side(p, end, sign[0], axis[0], size[0]) || !read_side(p, end, sign[1], axis[1], size[1]))
             fail_image(
                 name_,
                 fmt::format("damaged HDR: expected a resolution like '-Y 512 +X 1024', got '{}'", line));

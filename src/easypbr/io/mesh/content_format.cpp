@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <vector>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/io/source/text_scanner.h"
 
 namespace easypbr::io {
@@ -57,7 +57,7 @@ std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words(1);
     for (const char c : line) {
         if (!is_blank(c) && c != ',' && c != ';')
-            words.back() += char(std::tolower(static_cast<unsigned char>(c)));
+            words.back() += ascii::to_lower(c);
         else if (!words.back().empty())
             words.emplace_back();
     }
@@ -80,8 +80,7 @@ bool names_position(const std::vector<std::string>& words) {
 
 /// "OFF490 518 0": files of ModelNet have no blank before the first count.
 bool is_off_with_count(std::string_view word) {
-    return word.size() > 3 && word.starts_with("off") &&
-           std::ranges::all_of(word.substr(3), [](char c) { return c >= '0' && c <= '9'; });
+    return word.size() > 3 && word.starts_with("off") && std::ranges::all_of(word.substr(3), ascii::is_digit);
 }
 
 /// The format that a line of a text belongs to; empty when the line does not tell.

@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <span>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file_set.h"
 #include "easypbr/core/log.h"
@@ -234,9 +234,7 @@ uint64_t limit_of(const LoadOptions& options) {
 
 /// The format of the options as an extension; empty: they name none.
 std::string format_of(const LoadOptions& options) {
-    std::string format = options.format;
-    for (char& letter : format) letter = char(std::tolower(static_cast<unsigned char>(letter)));
-    return format;
+    return ascii::to_lower(options.format);
 }
 
 LoadedScene read_scene(const fs::path& path, const LoadOptions& options) {

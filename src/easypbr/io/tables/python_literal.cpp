@@ -1,7 +1,8 @@
 #include "easypbr/io/tables/python_literal.h"
 
-#include <cctype>
 #include <charconv>
+
+#include "easypbr/core/ascii.h"
 
 namespace easypbr::io {
 namespace {
@@ -19,7 +20,7 @@ class LiteralParser {
         if (c == '\'' || c == '"') return parse_string();
         if (c == '(' || c == '[') return parse_list(c == '(' ? ')' : ']', depth);
         if (c == '{') return parse_dictionary(depth);
-        if (std::isalpha(static_cast<unsigned char>(c))) return parse_word();
+        if (ascii::is_alpha(c)) return parse_word();
         const auto result = std::from_chars(p_, end_, value.number);
         if (result.ec == std::errc()) value.kind = PythonLiteral::integer, p_ = result.ptr;
         return value;
@@ -28,7 +29,7 @@ class LiteralParser {
   private:
     /// Whether nothing but blanks is left; passes over them.
     bool at_end() {
-        while (p_ != end_ && std::isspace(static_cast<unsigned char>(*p_))) ++p_;
+        while (p_ != end_ && ascii::is_space(*p_)) ++p_;
         return p_ == end_;
     }
 
@@ -53,7 +54,7 @@ class LiteralParser {
 
     PythonLiteral parse_word() {
         const char* first = p_;
-        while (p_ != end_ && std::isalnum(static_cast<unsigned char>(*p_))) ++p_;
+        while (p_ != end_ && ascii::is_alnum(*p_)) ++p_;
         const std::string_view word(first, size_t(p_ - first));
         PythonLiteral value;
         if (word != "True" && word != "False") return value;

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
@@ -52,22 +53,16 @@ const Spellings array_names{
     {"normal"}, {"c"},       {"rgb"},   {"rgba"},      {"uv"}, {"uvs"},   {"t"},      {"tangents"},
     {"colors"}, {"colours"}, {"color"}, {"texcoords"}, {"b"},  {"l"},     {"offset"}, {"bitangent_lengths"}};
 
-std::string lower(std::string_view text) {
-    std::string result(text);
-    for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return result;
-}
-
 /// What a field is called without CloudCompare's prefix.
 std::string without_prefix(std::string_view name) {
     constexpr std::string_view prefix = "scalar_";
-    return std::string(name.size() > prefix.size() && lower(name.substr(0, prefix.size())) == prefix
+    return std::string(name.size() > prefix.size() && ascii::to_lower(name.substr(0, prefix.size())) == prefix
                            ? name.substr(prefix.size())
                            : name);
 }
 
 bool has_name(const Spellings& spellings, std::string_view name) {
-    const std::string plain = lower(without_prefix(name));
+    const std::string plain = ascii::to_lower(without_prefix(name));
     return std::ranges::any_of(
         spellings, [&](const Names& names) { return std::ranges::find(names, plain) != names.end(); });
 }
@@ -86,7 +81,7 @@ std::vector<size_t> find_spelling(const std::vector<VertexField>& fields, const 
             for (const std::string_view name : names) {
                 const auto it = std::ranges::find_if(fields, [&](const VertexField& field) {
                     return field.column->is_skipped() && field.property.is_extra == is_extra &&
-                           lower(without_prefix(field.property.name)) == name;
+                           ascii::to_lower(without_prefix(field.property.name)) == name;
                 });
                 if (it != fields.end()) found.push_back(size_t(it - fields.begin()));
             }
@@ -174,7 +169,7 @@ ColorArrays::ColorArrays(const std::vector<VertexField>& fields, size_t count) {
     const auto packed = std::ranges::find_if(
         fields, [](const VertexField& field) { return is_packed_color(field.property); });
     if (!color.empty() || packed == fields.end()) return;
-    packed_parts_ = lower(without_prefix(packed->property.name)) == "rgba" ? 4 : 3;
+    packed_parts_ = ascii::to_lower(without_prefix(packed->property.name)) == "rgba" ? 4 : 3;
     charge_memory(uint64_t(count) * uint64_t(packed_parts_) * sizeof(float), "its colours");
     bits_.resize(count);
     packed->column->bits = bits_.data();
@@ -348,7 +343,7 @@ std::vector<std::string> names_of_parts(const std::string& name, size_t count) {
         {{"rgb", "rgba", "color", "colors", "c"}, {"red", "green", "blue", "alpha"}},
         {{"uv", "uvs", "texcoord", "texcoords"}, {"u", "v"}}};
     if (count == 1 || name == "_") return std::vector<std::string>(count, name);
-    const std::string plain = lower(name);
+    const std::string plain = ascii::to_lower(name);
     for (const auto& entry : known)
         if (entry.parts.size() == count && std::ranges::find(entry.whole, plain) != entry.whole.end())
             return {entry.parts.begin(), entry.parts.end()};

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 
 namespace easypbr::render {
@@ -14,12 +14,8 @@ namespace {
 /// How many variants with shaders of materials are kept.
 constexpr size_t most_shaders = 256;
 
-bool is_space(char c) {
-    return std::isspace(static_cast<unsigned char>(c));
-}
-
 bool is_word(char c) {
-    return c == '_' || std::isalnum(static_cast<unsigned char>(c));
+    return c == '_' || ascii::is_alnum(c);
 }
 
 /// Whether `text` has "void surface(", with any space between the words. A scan, because std::regex recurses
@@ -28,9 +24,9 @@ bool defines_surface(std::string_view text) {
     constexpr std::string_view name = "surface", type = "void";
     for (size_t at = 0; (at = text.find(name, at)) != text.npos; at += name.size()) {
         const std::string_view behind = text.substr(at + name.size());
-        const auto parenthesis = std::ranges::find_if_not(behind, is_space);
+        const auto parenthesis = std::ranges::find_if_not(behind, ascii::is_space);
         std::string_view before = text.substr(0, at);
-        while (!before.empty() && is_space(before.back())) before.remove_suffix(1);
+        while (!before.empty() && ascii::is_space(before.back())) before.remove_suffix(1);
         const bool is_function = parenthesis != behind.end() && *parenthesis == '(' && before.size() < at;
         if (!is_function || !before.ends_with(type)) continue;
         before.remove_suffix(type.size());

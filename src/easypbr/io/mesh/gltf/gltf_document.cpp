@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/gltf/gltf_meshopt.h"
 #include "easypbr/io/source/base64.h"
@@ -25,8 +26,8 @@ uint32_t word_at(std::span<const std::byte> bytes, size_t at) {
 }
 
 int hex_digit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    const char lower = char(c | 32);
+    if (ascii::is_digit(c)) return c - '0';
+    const char lower = ascii::to_lower(c);
     return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 

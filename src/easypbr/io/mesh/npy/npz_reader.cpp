@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/archive/zip_reader.h"
@@ -118,8 +119,7 @@ class NpzReader {
   private:
     void add_array(const ZipEntry& entry) {
         const std::string name = entry.name.substr(0, entry.name.size() - extension.size());
-        NamedArray array{name, name, Source(entry.bytes, source_.path), {}};
-        for (char& c : array.lower_name) c = char(std::tolower(static_cast<unsigned char>(c)));
+        NamedArray array{name, ascii::to_lower(name), Source(entry.bytes, source_.path), {}};
         try {
             array.array = parse_npy(array.source, entry.bytes);
             arrays_.push_back(std::move(array));

@@ -3,22 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/source/text_scanner.h"
 
 namespace easypbr::io {
 namespace {
-
-std::string lower_case(std::string_view word) {
-    std::string text(word);
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
 
 /// What a material's lines say, before defaults are filled in.
 struct MtlEntry {
@@ -50,7 +43,7 @@ class MtlParser {
 
     std::map<std::string, Material> parse() {
         for (p_ = source_.begin(); p_ != end_; p_ = next_line(p_, end_)) {
-            const std::string keyword = lower_case(read_word(p_, end_));
+            const std::string keyword = ascii::to_lower(read_word(p_, end_));
             if (keyword == "newmtl") {
                 finish();
                 entry_.emplace();
@@ -159,7 +152,7 @@ class MtlParser {
         bool clamp = false;
         int channel = 0;
         for (p_ = skip_blanks(p_, end_); p_ != end_ && *p_ == '-'; p_ = skip_blanks(p_, end_)) {
-            const std::string option = lower_case(read_word(p_, end_));
+            const std::string option = ascii::to_lower(read_word(p_, end_));
             if (option == "-s")
                 scale = pair(scale);
             else if (option == "-o")

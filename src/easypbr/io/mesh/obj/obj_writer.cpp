@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
@@ -93,7 +92,7 @@ void append_faces(const MeshData& mesh, const FacePolygons& polygons, const Mesh
 /// A name without what separates names, begins comments or continues lines.
 std::string plain_word(std::string name) {
     for (char& c : name)
-        if (std::isspace(static_cast<unsigned char>(c)) || c == '#' || c == '\\') c = '_';
+        if (ascii::is_space(c) || c == '#' || c == '\\') c = '_';
     return name;
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
@@ -59,7 +60,7 @@ class OffHeaderParser {
         header_.has_color = take("C");
         header_.has_normal = take("N");
         // Files of ModelNet have no blank before the first count: "OFF490 518 0".
-        if (word.size() > 3 && word.starts_with("OFF") && word[3] >= '0' && word[3] <= '9')
+        if (word.size() > 3 && word.starts_with("OFF") && ascii::is_digit(word[3]))
             p_ = word.data() + 3;
         else if (word != "OFF")
             fail_at_line(source_, p_,

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -42,9 +42,7 @@ size_t declared_facets(const Source& source) {
 
 bool starts_with_word(const char* p, const char* end, std::string_view word) {
     p = skip_blanks(p, end);
-    return size_t(end - p) >= word.size() && std::equal(word.begin(), word.end(), p, [](char a, char b) {
-               return a == std::tolower(static_cast<unsigned char>(b));
-           });
+    return size_t(end - p) >= word.size() && ascii::same_letters({p, word.size()}, word);
 }
 
 /// Binary files may begin with "solid" as well, so the size decides first.

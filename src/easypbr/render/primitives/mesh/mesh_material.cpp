@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "easypbr/core/ascii.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/resolve.h"
 
@@ -17,8 +17,9 @@ namespace {
 /// A texture of the shader; its place in the table is its row of u_uv_transform.
 struct TextureUse {
     explicit TextureUse(const MaterialTexture& row_)
-        : row(row_), sampler(fmt::format("u_{}_texture", row.name)), define(sampler.substr(2)) {
-        for (char& letter : define) letter = char(std::toupper(static_cast<unsigned char>(letter)));
+        : row(row_),
+          sampler(fmt::format("u_{}_texture", row.name)),
+          define(ascii::to_upper(sampler.substr(2))) {
         if (row.use == TexelUse::number) channel = fmt::format("u_{}_channel", row.name);
     }
 
