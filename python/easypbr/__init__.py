@@ -6,6 +6,7 @@
     view.recorder.record("img.png")
 """
 
+from . import interpreter  # noqa: F401 - first: it refuses sub-interpreters
 from . import _easypbr, errors, shapes
 from ._easypbr import (
     Automatic,
