@@ -88,7 +88,8 @@ class Settings(SettingsGroup):
             self._handle.set_settings(_by_full_names(values, ""))
 
     def to_dict(self) -> dict:
-        """All settings, given and inferred, and the lights of the scene, as in a settings file."""
+        """All settings, given and inferred, and the lights of the scene, as in a settings file. Raises ArgumentError where a
+        name is not UTF-8."""
         return json.loads(self._handle.settings_to_json())
 
 

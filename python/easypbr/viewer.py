@@ -299,7 +299,8 @@ class Viewer(Sharing):
         self._handle.forget_motion()
 
     def save_settings(self, path: str | os.PathLike[str]) -> None:
-        """Writes all settings, given and inferred, with hashes of the files in use."""
+        """Writes all settings, given and inferred, with hashes of the files in use. Raises ArgumentError where the settings
+        name a file, or the scene has a light, whose name is not UTF-8; of the scene's files such are left out, with a warning."""
         sources = (self.scene.get(name).source for name in self.scene.names())
         self._handle.save_settings(path, [source for source in sources if source])
 

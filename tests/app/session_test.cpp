@@ -11,6 +11,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/image.h"
+#include "easypbr/core/log.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/settings_io.h"
@@ -80,6 +81,25 @@ TEST_F(SessionFiles, SavedSettingsReproduceThePicture) {
     render_to_file(second, folder_ / "second.png");
     EXPECT_EQ(
         compare(io::load_image(folder_ / "first.png"), io::load_image(folder_ / "second.png")).different, 0u);
+}
+
+// A scene's file is only compared with its hash; the environment's is loaded again.
+TEST_F(SessionFiles, SavedSettingsNameNoFileWhoseNameIsNotUtf8) {
+    const fs::path model = folder_ / "caf\xe9.ply", light = folder_ / "caf\xe9.hdr",
+                   look = folder_ / "look.json";
+    write_file(model, "x");
+    write_file(light, "x");
+    Session session = small_session();
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    save_settings(session, {model}, look);
+    set_log_sink({});
+    const std::string folder = fs::absolute(folder_).string();
+    EXPECT_EQ(warnings, std::vector{look.string() + " does not hold the hash of " + folder +
+                                    "/caf\xe9.ply, whose name is not UTF-8"});
+    EXPECT_TRUE(io::load_settings(look).files.empty());
+    session.settings().environment.file = light.string();
+    EXPECT_THROW(save_settings(session, {}, look), ArgumentError);
 }
 
 // The file can be used from any folder and says when one of the files has changed since.

@@ -103,6 +103,25 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
     EXPECT_THROW(io::to_json({{}, {{"lamp", lamp}}, {}}), ArgumentError) << "it could not be read again";
 }
 
+// JSON is UTF-8. "caf\xe9" is Latin-1, and with another letter for its last byte would name another file.
+TEST(SettingsFile, RefusesNamesThatAreNotUtf8) {
+    const std::string name = "caf\xe9", utf8 = "caf\xc3\xa9";
+    const auto message = [](const io::SettingsFile& file) { return message_of([&] { io::to_json(file); }); };
+    io::SettingsFile file;
+    file.settings.environment.file = name;
+    const std::string expected =
+        "expected UTF-8, which settings are written in, got '" + name + "': rename it";
+    EXPECT_EQ(message(file), "setting 'environment.file': " + expected);
+    const TemporaryFolder folder;
+    write_file(folder / "look.json", "before");
+    EXPECT_THROW(io::save_settings(file, folder / "look.json"), ArgumentError);
+    EXPECT_EQ(FileBytes(folder / "look.json").text(), "before");
+    EXPECT_EQ(message({{}, {{name, {}}}, {}}), "name of a light: " + expected);
+    EXPECT_EQ(message({{}, {}, {{name, "0123"}}}), "name of a file: " + expected);
+    file.settings.environment.file = utf8;
+    EXPECT_EQ(io::parse_settings(io::to_json(file), "x").settings.environment.file, utf8);
+}
+
 TEST(SettingsFile, SaysWhatIsWrong) {
     const std::vector<std::pair<std::string, std::string>> table = {
         {"", "cannot read look.json, line 1, column 1: expected JSON, got the end of the text"},

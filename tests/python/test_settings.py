@@ -1,11 +1,12 @@
 import json
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import easypbr
-from easypbr import Scene, Viewer, auto, follow, shapes
+from easypbr import ArgumentError, Scene, Viewer, auto, follow, shapes
 
 
 @pytest.fixture
@@ -172,6 +173,17 @@ def test_saved_settings_give_the_same_picture_bit_for_bit(view, tmp_path):
         again = Viewer(settings=settings, scene=scene)
         assert again.settings.tonemap.operator == "neutral"
         np.testing.assert_array_equal(again.render(samples=2), picture)
+
+
+def test_saved_settings_name_no_file_whose_name_is_not_utf8(view, tmp_path):
+    """JSON cannot hold the name; one with another letter in place of the byte could not be loaded."""
+    light = tmp_path / os.fsdecode(b"caf\xe9.png")
+    easypbr.save_image(np.full((2, 4, 3), 200, np.uint8), light)
+    view.settings.environment.file = light
+    for save in (lambda: view.save_settings(tmp_path / "look.json"), view.settings.to_dict):
+        with pytest.raises(ArgumentError, match="environment.file': expected UTF-8"):
+            save()
+    assert not (tmp_path / "look.json").exists()
 
 
 def test_unreadable_settings_files(tmp_path):

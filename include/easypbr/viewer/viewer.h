@@ -137,6 +137,8 @@ class Viewer {
                                    const app::LineDrawingOptions& options = {});
 
     /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
+    /// Throws ArgumentError where the settings name a file, or the scene has a light, whose name is not
+    /// UTF-8; of `files` such are left out, with a warning. Throws FileError.
     void save_settings(const std::filesystem::path& path,
                        const std::vector<std::filesystem::path>& files = {});
     /// Takes over settings and lights from a file that save_settings() wrote. Files with another content than

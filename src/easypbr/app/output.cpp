@@ -7,6 +7,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/markup.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/presets.h"
@@ -101,7 +102,14 @@ void save_settings(const Session& session, const std::vector<fs::path>& files, c
     if (size) file.settings.image.size = *size;
     const Scene& scene = session.scene();
     for (const std::string& name : scene.light_names()) file.lights[name] = scene.light(name);
-    for (const fs::path& source : files) file.files[fs::absolute(source).string()] = io::hash_file(source);
+    for (const fs::path& source : files) {
+        const std::string name = fs::absolute(source).string();
+        if (valid_utf8(name) == name)
+            file.files[name] = io::hash_file(source);
+        else
+            log_warning(
+                fmt::format("{} does not hold the hash of {}, whose name is not UTF-8", path.string(), name));
+    }
     // Absolute, so that the picture can be made again from any folder.
     for_each_file(file.settings, [&](std::string& named) {
         if (named.empty()) return;

@@ -40,7 +40,9 @@ std::vector<std::filesystem::path> layers_to_files(Session& session, const std::
                                                    std::optional<Vec2i> size = std::nullopt);
 
 /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
-/// `size`: that of the picture; none: the settings'.
+/// `size`: that of the picture; none: the settings'. Throws ArgumentError where the settings name a file, or
+/// the scene has a light, whose name is not UTF-8; of `files` such are left out, with a warning. Throws
+/// FileError.
 void save_settings(const Session& session, const std::vector<std::filesystem::path>& files,
                    const std::filesystem::path& path, std::optional<Vec2i> size = std::nullopt);
 

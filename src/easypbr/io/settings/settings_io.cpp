@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/hash.h"
+#include "easypbr/core/markup.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/source/json_text.h"
 #include "easypbr/scene/fields.h"
@@ -22,6 +23,14 @@ using OrderedJson = nlohmann::ordered_json;
 
 constexpr int format_version = 1;
 
+/// The text. Throws ArgumentError where JSON cannot hold it: with other bytes it would name another thing.
+const std::string& checked_text(std::string_view what, const std::string& text) {
+    if (valid_utf8(text) != text)
+        throw ArgumentError(fmt::format(
+            "{}: expected UTF-8, which settings are written in, got '{}': rename it", what, text));
+    return text;
+}
+
 OrderedJson json_of(const FieldInfo& field, double number) {
     return field.whole ? OrderedJson(int64_t(number)) : OrderedJson(number);
 }
@@ -29,7 +38,8 @@ OrderedJson json_of(const FieldInfo& field, double number) {
 OrderedJson json_of(const FieldInfo& field, const Value::Data& data) {
     if (const auto* flag = std::get_if<bool>(&data)) return *flag;
     if (const auto* number = std::get_if<double>(&data)) return json_of(field, *number);
-    if (const auto* text = std::get_if<std::string>(&data)) return *text;
+    if (const auto* text = std::get_if<std::string>(&data))
+        return checked_text(fmt::format("setting '{}'", field.name), *text);
     OrderedJson list = OrderedJson::array();
     for (const double number : std::get<std::vector<double>>(data)) list.push_back(json_of(field, number));
     return list;
@@ -200,9 +210,11 @@ std::string to_json(const SettingsFile& file) {
     for (const Field& field : fields())
         place_of(root["settings"], field.name) = json_of(field, field.get(file.settings));
     root["lights"] = OrderedJson::object();
-    for (const auto& [name, light] : file.lights) root["lights"][name] = json_of(name, light);
-    root["files"] = file.files;
-    return root.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+    for (const auto& [name, light] : file.lights)
+        root["lights"][checked_text("name of a light", name)] = json_of(name, light);
+    root["files"] = OrderedJson::object();
+    for (const auto& [name, hash] : file.files) root["files"][checked_text("name of a file", name)] = hash;
+    return root.dump(2) + "\n";
 }
 
 std::string hash_file(const std::filesystem::path& path) {

@@ -28,6 +28,8 @@ SettingsFile parse_settings(const std::string& json, const std::string& name);
 /// Sets what the text of a settings file says; the rest of `file` stays. Throws as parse_settings().
 void apply_settings(const std::string& json, const std::string& name, SettingsFile& file);
 
+/// Throw ArgumentError for a light with values that none can have, and for texts and names that are not
+/// UTF-8; FileError.
 void save_settings(const SettingsFile& file, const std::filesystem::path& path);
 std::string to_json(const SettingsFile& file);
 
