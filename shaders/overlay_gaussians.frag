@@ -11,6 +11,7 @@ flat in uint v_splat;
 layout(location = 0) out vec4 o_color;
 
 const float reach = 3.5;  // standard deviations along the ray, beyond which a splat has nothing
+const float farthest_part = 0.1, farthest_straight_part = 1e-3, flat_deviations = 100.0;  // as native/kernels.h
 
 // Abramowitz and Stegun 1964, 26.2.17.
 float normal_cdf(float deviations) {
@@ -18,6 +19,18 @@ float normal_cdf(float deviations) {
     float tail = 0.39894228 * exp(-0.5 * x * x) * t *
                  (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
     return deviations < 0.0 ? tail : 1.0 - tail;
+}
+
+// Where a splat is densest along the pixel's ray, reversed depth, and what deviations are multiplied with (see
+// native/kernels.h).
+vec2 densest(ScreenSplat s, vec2 d, float power) {
+    float first_order = dot(s.depths.xy, d) + s.color.w;
+    if (!(s.depths.w > 0.0)) return vec2(first_order, 1.0);
+    if (s.depths.w * s.depths.z >= flat_deviations)
+        return vec2(clamp(first_order, farthest_part * s.depths.w, 1.0), 1.0);
+    float straight = max(first_order, farthest_straight_part * s.depths.w);
+    float depth = straight + 2.0 / (s.depths.z * s.depths.z) * max(power, 0.0) / straight;
+    return vec2(min(depth, 1.0), sqrt(straight / depth));
 }
 
 void main() {
@@ -30,7 +43,8 @@ void main() {
     if (surface > 0.0) {
         // In deviations of distances, as native/simd/blend_splats.h has them.
         float scale = s.depths.w > 0.0 ? s.depths.w / surface : 1.0, margin = is_soft ? reach : 0.0;
-        float before = (dot(s.depths.xy, d) + s.color.w - surface) * s.depths.z * scale;
+        vec2 at = densest(s, d, power);
+        float before = (at.x - surface) * s.depths.z * at.y * scale;
         if (before < -margin) discard;
         // The part before the surface of a medium with this density.
         if (before < margin) alpha = 1.0 - exp(normal_cdf(before) * log(1.0 - alpha));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "dataset/placed_meshes.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
@@ -78,6 +79,69 @@ TEST(SplatTruth, DepthNormalAndIndexAreThoseOfTheWall) {
                 ASSERT_NEAR(0.05 * (splat / side - side / 2), up, 0.145);
             }
     }
+}
+
+/// A splat with other semi-axes in all directions, or a ball.
+Mesh one_splat(const Vec3& mean, const Vec3& scales) {
+    MeshData mesh;
+    mesh.V = Array3f::Dense(mean.transpose());
+    mesh.splats.scales = Array3f::Dense(scales.transpose());
+    mesh.splats.rotations = Array4f::Dense(Eigen::RowVector4f(0.8f, 0.36f, 0.48f, 0));
+    mesh.splats.opacities = Array1f::Dense::Constant(1, 0.99f);
+    mesh.splats.sh = ArrayXf::Dense::Zero(1, 3);
+    return Mesh(mesh);
+}
+
+/// The depth at which one_splat() is densest along a ray from the camera's centre, (d P m) / (d P d) with the
+/// inverse covariance P, in the frame of a camera at the origin that looks along -z.
+double densest_depth(const Vec3& mean, const Vec3& scales, const Vec2d& slopes) {
+    const Mat3d axes = Eigen::Quaterniond(0.8, 0.36, 0.48, 0).toRotationMatrix(),
+                P = axes * scales.cast<double>().cwiseAbs2().cwiseInverse().asDiagonal() * axes.transpose();
+    const Vec3d d(slopes.x(), -slopes.y(), -1), m = mean.cast<double>();
+    return d.dot(P * m) / d.dot(P * d);
+}
+
+// From a thick splat around the camera, where the projection's derivative is far off, to a slice. Rays that
+// go away from a mean beside the camera see the most of it at the near plane. A tolerance of 1e-6: depths,
+// places and sizes are floats, 6e-8 each, and the slice's inverse covariance has a condition of 11.
+TEST(SplatTruth, DepthIsExactWhereASplatIsDensest) {
+    constexpr double focal = 52;
+    const Vec2i wide(80, 60);
+    const Mat3d K = (Mat3d() << focal, 0, 39.5, 0, focal, 29.5, 0, 0, 1).finished();
+    const std::pair<Vec3, Vec3> every[] = {
+        {Vec3(0.05f, 0, -0.006f), Vec3::Constant(0.1f)}, {Vec3(0.05f, 0, -0.02f), Vec3::Constant(0.1f)},
+        {Vec3(0.1f, 0, -0.1f), Vec3::Constant(0.1f)},    {Vec3(0.2f, 0.1f, -0.2f), Vec3::Constant(0.1f)},
+        {Vec3(0.1f, 0.1f, -1), Vec3(0.3f, 0.1f, 0.2f)},  {Vec3(-0.2f, 0.1f, -2), Vec3(0.5f, 0.4f, 0.15f)}};
+    for (const auto& [mean, scales] : every)
+        for (const bool through_lens : {false, true}) {
+            Scene scene;
+            scene.show(one_splat(mean, scales), "splat");
+            app::Session session = plain_session(scene);
+            Camera camera = opencv_camera(K, wide);
+            if (through_lens)
+                camera.distortion =
+                    Distortion::from_coefficients(DistortionModel::brown_conrady, {-0.1, 0, 0, 0});
+            session.set_camera(camera);
+            TruthOptions options;
+            options.size = wide;
+            const GroundTruth truth = ground_truth(session, {"depth", "position", "instance_id"}, options);
+            const std::span<const float> depth = truth.layers.at("depth").floats();
+            const auto ids = truth.layers.at("instance_id").integers();
+            int seen = 0;
+            for (size_t i = 0; i < ids.size(); ++i) {
+                if (ids[i] == 0) continue;
+                ++seen;
+                const float* p = &truth.layers.at("position").floats()[3 * i];
+                const Vec2d on_sensor((double(i % size_t(wide.x())) - 39.5) / focal,
+                                      (double(i / size_t(wide.x())) - 29.5) / focal);
+                const Vec2d slopes = through_lens ? Vec2d(p[0] / -p[2], p[1] / p[2]) : on_sensor;
+                const double expected =
+                    std::max(densest_depth(mean, scales, slopes), double(truth.camera.near));
+                ASSERT_NEAR(depth[i], expected, 1e-6 * expected) << mean.transpose() << " " << i;
+            }
+            // The first two are drawn in all of the picture.
+            EXPECT_GE(seen, mean.z() > -0.05f ? int(ids.size()) : 200) << mean.transpose();
+        }
 }
 
 // A splat of some opacity a half unit before the wall: it is the surface where it stops half of the light.

@@ -35,11 +35,11 @@ PixelRay PickBuffer::ray_through(Vec2d pixel) const {
 
 double PickBuffer::depth_along(const PixelRay& ray, size_t drawn) const {
     const DrawnPixel pixel{double(frame_.depth[drawn]), ray_of_drawn(drawn)};
-    if (!frame_.is_face[drawn]) return pixel.depth;
     const SceneSnapshot::Object& seen = frame_.scene.objects[frame_.object[drawn] - 1];
+    const Eigen::Affine3d T_cv_mesh = cv_from_world(camera_) * seen.T_world_mesh;
+    if (!frame_.is_face[drawn]) return depth_on_vertex(frame_, drawn, T_cv_mesh, ray, pixel);
     const int face = int(frame_.element[drawn]) - 1;
-    return depth_on_face(corners_of(*seen.mesh, face, cv_from_world(camera_) * seen.T_world_mesh), ray,
-                         pixel);
+    return depth_on_face(corners_of(*seen.mesh, face, T_cv_mesh), ray, pixel);
 }
 
 std::optional<PixelRay> PickBuffer::ray_of_drawn(size_t drawn) const {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "easypbr/app/face_depth.h"
+#include "easypbr/app/element_depth.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/picture.h"
 #include "easypbr/core/image.h"

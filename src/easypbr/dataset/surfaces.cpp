@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "easypbr/app/face_depth.h"
+#include "easypbr/app/element_depth.h"
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::dataset {
@@ -142,7 +142,7 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
     s.size = lens.size;
     s.camera = camera;
     s.slopes = slopes_of(camera, s.size, lens);
-    s.scene = std::move(frame.scene);
+    s.scene = frame.scene;
     s.only_faces = std::move(frame.only_faces);
     s.voxel_sizes = std::move(frame.voxel_sizes);
     const size_t count = s.slopes.size();
@@ -161,9 +161,11 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
         s.part[i] = frame.part[drawn];
         s.is_face[i] = frame.is_face[drawn];
         if (!s.covered(i)) return;
-        const double depth = frame.depth[drawn];
-        if (s.on_face(i)) return meet_face(s, i, T_cv_mesh[s.object[i] - 1], drawn_pixel(lens, drawn, depth));
+        const Eigen::Affine3d& T = T_cv_mesh[s.object[i] - 1];
+        const DrawnPixel pixel = drawn_pixel(lens, drawn, frame.depth[drawn]);
+        if (s.on_face(i)) return meet_face(s, i, T, pixel);
         const PixelRay ray = ray_of(s, i);
+        const double depth = app::depth_on_vertex(frame, drawn, T, ray, pixel);
         s.position[i] = Vec3d(ray.origin + depth * ray.direction).cast<float>();
     });
     return s;

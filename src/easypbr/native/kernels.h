@@ -178,13 +178,23 @@ inline constexpr float least_splat_transmittance = 1e-4f;
 inline constexpr float splat_reach = 3.5f;
 /// Surfaces of smaller reversed depths are as far away as these.
 inline constexpr float least_splat_limit = 1e-30f;
-/// To first order a large splat reaches behind the camera or beyond all: no farther than this times its mean.
+/// To first order a large splat reaches behind the camera or beyond all: its depth is at least this part of
+/// the mean's.
 inline constexpr float farthest_splat_part = 0.1f;
+/// The same for the part of first order of a depth that is exact.
+inline constexpr float farthest_straight_part = 1e-3f;
+/// With so many standard deviations along the ray between camera and mean the depth to first order changes
+/// what a limit cuts off by less than a code: 2 p / 100 deviations where the opacity is exp(-p).
+inline constexpr float flat_splat_deviations = 100;
 
 /// A Gaussian splat on the screen. Its opacity at a pixel's centre p is
 /// opacity * exp(-(xx dx^2 + 2 xy dx dy + yy dy^2) / 2), d = p - centre, and what is seen of it there is
-/// where it is densest along the pixel's ray, at depth + depth_x dx + depth_y dy (Zwicker et al. 2002), to
-/// first order. A cache line.
+/// where it is densest along the pixel's ray. To first order that is at s = depth + depth_x dx + depth_y dy
+/// (Zwicker et al. 2002), as it is in an orthographic view. In a perspective one it is at s + 2 p /
+/// (sharpness^2 s), -p being the power above: of the ray o + t d and the inverse covariance P about the mean
+/// m, 1 / t is (d P d) / (d P m), s the part of it that is linear in the pixel, and p / sharpness^2 what is
+/// left of the square. The standard deviation along the ray grows by the root of the quotient of both. A
+/// cache line.
 struct alignas(64) ScreenSplat {
     float x, y;                     ///< centre, in pixels of the frame
     float xx, xy, yy;               ///< inverse of the covariance, per square pixel

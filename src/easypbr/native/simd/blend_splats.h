@@ -75,6 +75,32 @@ INLINE void find_limit_scales(const SplatPixels& tile, LimitScales& scales) {
     }
 }
 
+/// Where a splat is densest along the rays of pixels (see ScreenSplat), from the near plane on, and what
+/// deviations of its limits are multiplied with.
+struct Densest {
+    vfloat depth, narrowing;
+};
+INLINE bool is_flat(const ScreenSplat& splat) {
+    return splat.depth * splat.sharpness >= flat_splat_deviations;
+}
+/// Whether the depths of a splat are not those of first order in all pixels.
+INLINE bool bends(const SplatPixels& tile, const ScreenSplat& splat) {
+    if (tile.axis[2] == 0) return false;
+    const float change = __builtin_fabsf(splat.depth_x) * splat.half_width +
+                         __builtin_fabsf(splat.depth_y) * splat.half_height;
+    return !(is_flat(splat) && change <= (1 - farthest_splat_part) * splat.depth &&
+             splat.depth + change <= 1);
+}
+template <bool is_bent>
+INLINE Densest densest(const ScreenSplat& splat, vfloat dx, float dy, vfloat power) {
+    const vfloat first_order = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
+    if (!is_bent) return {first_order, 1.0f};
+    if (is_flat(splat)) return {clamp(first_order, farthest_splat_part * splat.depth, 1.0f), 1.0f};
+    const vfloat straight = max(first_order, farthest_straight_part * splat.depth),
+                 depth = straight + 2 / (splat.sharpness * splat.sharpness) * max(power, 0.0f) / straight;
+    return {min(depth, 1.0f), sqrt(straight / depth)};
+}
+
 /// First and one past the last pixel of a tile whose centres lie in [low, high] of the frame.
 struct PixelSpan {
     int first, end;
@@ -96,20 +122,23 @@ INLINE bool is_opaque(const SplatPixels& tile) {
 }
 
 /// Of a part of a row where a splat may be seen.
-template <bool is_limited, bool sums_positions>
+template <bool is_limited, bool sums_positions, bool is_bent>
 INLINE void blend_pixels(const SplatPixels& tile, const LimitScales& scales, const ScreenSplat& splat,
                          uint32_t place, vfloat dx, float dy, vfloat farthest_power, size_t at) {
     const vfloat power = (vfloat(0.5f * splat.xx) * dx + splat.xy * dy) * dx + 0.5f * splat.yy * dy * dy;
     const vfloat light = load_pixels(tile.through + at);
     vbool seen = power <= farthest_power && light >= least_splat_transmittance;
+    if (is_bent && !any_lane(seen)) return;
     vbool is_cut = false;
-    vfloat to_farthest = 0.0f, to_nearest = 0.0f, depth = 0.0f;
-    if (is_limited || sums_positions) depth = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
+    vfloat to_farthest = 0.0f, to_nearest = 0.0f;
+    Densest at_ray{0.0f, 1.0f};
+    if (is_limited || sums_positions) at_ray = densest<is_bent>(splat, dx, dy, power);
     if (is_limited) {
         const float mean = tile.axis[2] != 0 ? splat.depth : 1;
-        to_farthest = (depth - load_pixels(tile.farthest + at)) * splat.sharpness *
+        const vfloat sharpness = is_bent ? splat.sharpness * at_ray.narrowing : vfloat(splat.sharpness);
+        to_farthest = (at_ray.depth - load_pixels(tile.farthest + at)) * sharpness *
                       (mean * load_pixels(scales.farthest + at));
-        to_nearest = (depth - load_pixels(tile.nearest + at)) * splat.sharpness *
+        to_nearest = (at_ray.depth - load_pixels(tile.nearest + at)) * sharpness *
                      (mean * load_pixels(scales.nearest + at));
         const float margin = tile.is_soft ? splat_reach : 0;
         seen = seen && to_farthest >= -margin && to_nearest < margin;
@@ -127,8 +156,7 @@ INLINE void blend_pixels(const SplatPixels& tile, const LimitScales& scales, con
     store_pixels(tile.through + at, rest);
     if (sums_positions) {
         const float* axis = tile.axis;
-        const vfloat kept = max(depth, farthest_splat_part * splat.depth);
-        const vfloat position = (axis[1] - kept * axis[3]) / (kept * axis[2] - axis[0]);
+        const vfloat position = (axis[1] - at_ray.depth * axis[3]) / (at_ray.depth * axis[2] - axis[0]);
         store_pixels(tile.positions + at, load_pixels(tile.positions + at) + part * position);
     }
     const vbool crosses = light >= 0.5f && rest < 0.5f;
@@ -137,7 +165,7 @@ INLINE void blend_pixels(const SplatPixels& tile, const LimitScales& scales, con
         if (crosses.v[i]) tile.median[at + size_t(i)] = place;
 }
 
-template <bool is_limited, bool sums_positions>
+template <bool is_limited, bool sums_positions, bool is_bent>
 void blend_one(const SplatPixels& tile, const LimitScales& scales, const ScreenSplat& splat, uint32_t place) {
     const PixelSpan columns = span_of(splat.x, splat.half_width, tile.left),
                     rows = span_of(splat.y, splat.half_height, tile.top);
@@ -145,9 +173,9 @@ void blend_one(const SplatPixels& tile, const LimitScales& scales, const ScreenS
     for (int y = rows.first; y < rows.end; ++y) {
         const float dy = float(tile.top + y) + 0.5f - splat.y;
         for (int x = columns.first / lanes * lanes; x < columns.end; x += lanes)
-            blend_pixels<is_limited, sums_positions>(tile, scales, splat, place,
-                                                     steps + (float(tile.left + x) + 0.5f - splat.x), dy,
-                                                     farthest_power, size_t(y) * tile_size + size_t(x));
+            blend_pixels<is_limited, sums_positions, is_bent>(
+                tile, scales, splat, place, steps + (float(tile.left + x) + 0.5f - splat.x), dy,
+                farthest_power, size_t(y) * tile_size + size_t(x));
     }
 }
 
@@ -158,7 +186,11 @@ void blend_all(const SplatPixels& tile, const ScreenSplat* splats, const uint32_
     for (size_t i = 0; i < count; ++i) {
         if (i % splats_between_looks == 0 && is_opaque(tile)) return;
         if (i + splats_ahead < count) __builtin_prefetch(&splats[places[i + splats_ahead]]);
-        blend_one<is_limited, sums_positions>(tile, scales, splats[places[i]], places[i]);
+        const ScreenSplat& splat = splats[places[i]];
+        if ((is_limited || sums_positions) && bends(tile, splat))
+            blend_one<is_limited, sums_positions, true>(tile, scales, splat, places[i]);
+        else
+            blend_one<is_limited, sums_positions, false>(tile, scales, splat, places[i]);
     }
 }
 

@@ -19,6 +19,14 @@ std::vector<uint32_t> parts_of_faces(const MeshData& mesh) {
     return parts;
 }
 
+/// Points beside surfels or splats have no shape of their own.
+VertexShape vertex_shape_of(const DrawStyle& style, SplatDepth splats) {
+    if (style.show_points) return VertexShape::none;
+    if (style.mode == DrawMode::surfels) return VertexShape::surfel;
+    const bool is_splat = style.mode == DrawMode::splats && splats != SplatDepth::expected;
+    return is_splat ? VertexShape::splat : VertexShape::none;
+}
+
 /// A projection to a rectangle of the picture's pixels.
 Mat4d crop(const PixelRect& area, Vec2i size) {
     const double sx = double(size.x()) / area.width, sy = double(size.y()) / area.height;
@@ -78,6 +86,7 @@ SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) co
         const DrawStyle style = resolve_style(*object.mesh, resolved_.settings.style);
         as_mesh.push_back(style.mode == DrawMode::mesh);
         frame.only_faces.push_back(style.mode == DrawMode::mesh && !style.show_points);
+        frame.vertex_shapes.push_back(vertex_shape_of(style, resolved_.settings.splats.depth));
     }
     for (const ElementSources& source : drawable_.sources) frame.voxel_sizes.push_back(source.voxel_size);
     const float near = float(frame.camera.near), far = float(frame.camera.far);

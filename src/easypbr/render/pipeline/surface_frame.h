@@ -9,6 +9,13 @@
 
 namespace easypbr::render {
 
+/// What shape tells more of the vertices of an object than the depth that was drawn of them.
+enum class VertexShape {
+    none,
+    surfel,  ///< flat
+    splat    ///< a Gaussian, seen where it is densest along the ray
+};
+
 /// Never anti-aliased, blended or filtered; row 0 on top. A blended surface stands where it is half opaque or
 /// more.
 struct SurfaceFrame {
@@ -24,6 +31,7 @@ struct SurfaceFrame {
     std::vector<bool> only_faces;   ///< for each object: nothing of it reaches beyond its vertices
     /// For each object: the edge of its voxels in the units of V, 0: it has none.
     std::vector<double> voxel_sizes;
+    std::vector<VertexShape> vertex_shapes;  ///< for each object
 };
 
 }  // namespace easypbr::render

@@ -13,6 +13,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/primitives/overlay_depths.h"
+#include "easypbr/render/primitives/splats/splat_depth.h"
 #include "easypbr/render/primitives/splats/splat_hits.h"
 #include "easypbr/scene/resolve.h"
 
@@ -51,6 +52,21 @@ void add_color(const SplatProjector& projector, ProjectedSplat& splat) {
     projector.color(Eigen::Index(splat.index), splat);
 }
 
+/// Of a pixel's centre, in the frame of the view.
+DepthRay ray_of(const Frame& frame, int x, int y) {
+    const Vec3d point = view_position(frame, {x, y}, 0.5);
+    if (frame.orthographic()) return {{point.x(), point.y(), 0}, -Vec3d::UnitZ()};
+    return {Vec3d::Zero(), point / -point.z()};
+}
+
+/// Reversed; what the near plane cuts off is not seen, and nothing has no depth.
+float depth_in_pixel(const Frame& frame, const DepthAxis& axis, const DrawItem& item, Eigen::Index vertex,
+                     const DepthRay& ray) {
+    const Eigen::Affine3d T_view_mesh = Eigen::Affine3d(frame.camera.view()) * item.object->T_world_mesh;
+    const double z = std::max(splat_depth(item.mesh(), vertex, T_view_mesh, ray), frame.camera.near);
+    return std::max(axis.depth_at(float(-z)), std::numeric_limits<float>::min());
+}
+
 /// The surface of a tile's pixel, which has one.
 SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, const SplatTile& tile,
                         size_t in_tile, int x, int y) {
@@ -63,10 +79,9 @@ SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, c
     pixel.normal = splat_normal(item, vertex, towards_camera(frame, item, vertex)).cast<float>();
     pixel.roughness = 1;
     pixel.kind = item.kind;
-    pixel.depth = splat.depth + splat.depth_x * (float(x) + 0.5f - splat.x) +
-                  splat.depth_y * (float(y) + 0.5f - splat.y);
-    if (tile.sums_positions)
-        pixel.depth = tile.axis.depth_at(tile.positions[in_tile] / (1 - tile.through[in_tile]));
+    pixel.depth = tile.sums_positions
+                      ? tile.axis.depth_at(tile.positions[in_tile] / (1 - tile.through[in_tile]))
+                      : depth_in_pixel(frame, tile.axis, item, vertex, ray_of(frame, x, y));
     pixel.object = uint32_t(item.object - frame.scene->objects.data());
     pixel.element = splat.index;
     pixel.is_point = true;

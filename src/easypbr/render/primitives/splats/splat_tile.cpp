@@ -23,11 +23,27 @@ float cut_opacity(float opacity, float to_farthest, float to_nearest) {
     return -std::expm1(part * std::log1p(-opacity));
 }
 
+/// Where a splat is densest along a pixel's ray, and what deviations of its limits are multiplied with.
+struct Densest {
+    float depth, narrowing;
+};
+
+/// As simd/blend_splats.h.
+Densest densest(const ProjectedSplat& splat, float dx, float dy, float power, bool is_reciprocal) {
+    const float first_order = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
+    if (!is_reciprocal) return {first_order, 1};
+    if (splat.depth * splat.sharpness >= native::flat_splat_deviations)
+        return {std::clamp(first_order, native::farthest_splat_part * splat.depth, 1.0f), 1};
+    const float straight = std::max(first_order, native::farthest_straight_part * splat.depth),
+                depth = straight + 2 / (splat.sharpness * splat.sharpness) * std::max(power, 0.0f) / straight;
+    return {std::min(depth, 1.0f), std::sqrt(straight / depth)};
+}
+
 /// Standard deviations from where a splat is densest to a limit (as simd/blend_splats.h).
-float deviations_to(float limit, float depth, const ProjectedSplat& splat, bool is_reciprocal) {
+float deviations_to(float limit, const Densest& at, const ProjectedSplat& splat, bool is_reciprocal) {
     const float scale =
         is_reciprocal ? splat.depth * (1 / std::clamp(limit, native::least_splat_limit, 1.0f)) : 1;
-    return (depth - limit) * splat.sharpness * scale;
+    return (at.depth - limit) * (splat.sharpness * at.narrowing) * scale;
 }
 
 }  // namespace
@@ -63,13 +79,14 @@ namespace {
 
 /// A splat in one pixel.
 struct InPixel {
-    float depth, alpha;
+    Densest at;
+    float alpha;
     uint32_t place;
 };
 
 /// Those of a pixel, from the nearest on; of equal depth in the order of the places.
 void find_in_pixel(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
-                   const Vec2& pixel, std::vector<InPixel>& found) {
+                   const Vec2& pixel, bool is_reciprocal, std::vector<InPixel>& found) {
     found.clear();
     for (const uint32_t place : places) {
         const ProjectedSplat& s = splats[place];
@@ -78,28 +95,28 @@ void find_in_pixel(std::span<const ProjectedSplat> splats, std::span<const uint3
         const float power = (0.5f * s.xx * dx + s.xy * dy) * dx + 0.5f * s.yy * dy * dy;
         const float alpha = std::min(s.opacity * std::exp(-power), most_splat_alpha);
         if (alpha >= least_splat_alpha)
-            found.push_back({s.depth_x * dx + (s.depth + s.depth_y * dy), alpha, place});
+            found.push_back({densest(s, dx, dy, power, is_reciprocal), alpha, place});
     }
-    std::ranges::stable_sort(found, std::greater{}, &InPixel::depth);
+    std::ranges::stable_sort(found, std::greater{}, [](const InPixel& one) { return one.at.depth; });
 }
 
 }  // namespace
 
 void SplatTile::blend_resorted(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places) {
     thread_local std::vector<InPixel> found;
+    const bool is_reciprocal = axis.c != 0;
     for (size_t at = 0; at < through.size(); ++at) {
         const int x = left + int(at) % size, y = top + int(at) / size;
         const Vec2 pixel(float(x) + 0.5f, float(y) + 0.5f);
-        find_in_pixel(splats, places, pixel, found);
+        find_in_pixel(splats, places, pixel, is_reciprocal, found);
         for (const InPixel& one : found) {
             float& light = through[at];
             if (light < least_splat_transmittance) break;
             const ProjectedSplat& splat = splats[one.place];
             float alpha = one.alpha;
             if (is_limited) {
-                const bool is_reciprocal = axis.c != 0;
-                const float to_farthest = deviations_to(farthest[at], one.depth, splat, is_reciprocal),
-                            to_nearest = deviations_to(nearest[at], one.depth, splat, is_reciprocal),
+                const float to_farthest = deviations_to(farthest[at], one.at, splat, is_reciprocal),
+                            to_nearest = deviations_to(nearest[at], one.at, splat, is_reciprocal),
                             margin = is_soft ? native::splat_reach : 0;
                 if (!(to_farthest >= -margin && to_nearest < margin)) continue;
                 if (to_farthest < margin || to_nearest >= -margin)
@@ -109,9 +126,7 @@ void SplatTile::blend_resorted(std::span<const ProjectedSplat> splats, std::span
             red[at] += part * splat.red;
             green[at] += part * splat.green;
             blue[at] += part * splat.blue;
-            if (sums_positions)
-                positions[at] +=
-                    part * axis.position_at(std::max(one.depth, native::farthest_splat_part * splat.depth));
+            if (sums_positions) positions[at] += part * axis.position_at(one.at.depth);
             if (light >= 0.5f && rest < 0.5f) median[at] = one.place;
             light = rest;
         }
