@@ -1,12 +1,13 @@
 // Second step of surface splatting (Botsch et al. 2005). Without ACCUMULATE: the nearest distance of each pixel, pushed
 // back by the surfel's size. With it: weighted sums of what lies before that. FARTHEST: the farthest distance, pulled
-// forward, and what lies behind that.
+// forward, and what lies behind that. ONE_SURFEL: no distance is pushed, and ids say which surfel alone is summed.
 #include "common_projection.glsl"
 
 #feature PEEL is_peeling
 #feature FARTHEST finds_farthest
 #feature ACCUMULATE is_accumulating
 #feature OBJECT_ID has_ids
+#feature ONE_SURFEL is_single
 
 uniform sampler2D u_depth_target;  // of what hides surfels; PEEL: where the last layer ended
 uniform vec2 u_size;
@@ -31,6 +32,7 @@ layout(location = 1) out uint o_element;
 #endif
 
 uniform int u_object_id;
+uniform usampler2D u_id, u_element;  // ONE_SURFEL, of what is summed: of each pixel's nearest surfel
 
 void main() {
     vec2 d = gl_FragCoord.xy - v_centre;
@@ -47,6 +49,10 @@ void main() {
     if (!(r2 <= 1.0) || depth < limit) discard;
     if (is_peeling && depth == limit) discard;
 #ifdef ACCUMULATE  // As above.
+    if (is_single) {
+        ivec2 p = ivec2(gl_FragCoord.xy);
+        if (texelFetch(u_id, p, 0).r != uint(u_object_id) || texelFetch(u_element, p, 0).r != v_element) discard;
+    }
     gl_FragDepth = depth;
     float weight = max((1.0 - r2) * (1.0 - r2), 1e-4);
     o_albedo = vec4(v_color.rgb, 1.0) * weight;

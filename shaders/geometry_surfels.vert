@@ -19,7 +19,7 @@ uniform mat3 u_normal_from_mesh;
 uniform vec2 u_size;
 uniform vec4 u_base_color;  // linear, opacity in w
 uniform vec3 u_eye;         // in the mesh's frame; orthographic: direction towards the viewer
-uniform vec4 u_surfel;      // factor on the size, radius without a tangent, near, scale of the pose
+uniform vec4 u_surfel;      // factor on the size, radius without a tangent, near, scale of the pose, 0: no band
 uniform float u_least_radius;
 uniform float u_alpha_cutoff;
 uniform float u_pixel;      // its height, at distance 1 or anywhere (orthographic)

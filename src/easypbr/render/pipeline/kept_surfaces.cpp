@@ -65,7 +65,7 @@ Shot KeptSurfaces::shot() const {
 void KeptSurfaces::draw(Pipeline& pipeline) const {
     const Frame frame = make_frame(shot(), 0, resolved_.camera, pipeline.bounds_of(drawable_.scene),
                                    list_.reaches_beyond_vertices());
-    pipeline.draw_surfaces(frame, list_, {.ids = true});
+    pipeline.draw_surfaces(frame, list_, {.ids = true, .one_surfel = true});
 }
 
 SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) const {

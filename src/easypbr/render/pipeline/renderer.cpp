@@ -147,7 +147,8 @@ void Renderer::prepare(Picture& picture) {
     if (options.surfaces) {
         keep_surfaces(picture.scene, resolved, options.size, picture.images);
         picture.holds_surfaces = options.samples == 1 && !all.has(shows_more) && !all.has_soft_surfaces() &&
-                                 !all.extensions() && !GroundPass::is_on(resolved);
+                                 !all.extensions() && !GroundPass::is_on(resolved) &&
+                                 all.of(DrawMode::surfels).empty();
     }
     const bool traces_paths = resolved.traces_paths && (options.samples > 1 || resolved.asks_for_paths);
     picture.contents = {.ids = options.ids || picture.holds_surfaces,

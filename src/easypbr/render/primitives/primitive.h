@@ -85,7 +85,8 @@ class Primitive {
     virtual bool has_driver() const { return true; }
     /// Adds the surface of each pixel of the whole frame where it is nearer than `hides` (reversed depth, row
     /// by row) says; `writer` holds the same frame.
-    virtual void add_mean(const Frame&, DrawItems, std::span<const float>, SurfaceWriter&) {}
+    virtual void add_mean(const Frame&, DrawItems, std::span<const float>, const SurfaceOutputs&,
+                          SurfaceWriter&) {}
     /// Sets to 1 what items cover of the frame, row by row; false when only the G-buffer can tell.
     virtual bool cover(const Frame&, DrawItems, std::span<uint8_t>) { return false; }
 

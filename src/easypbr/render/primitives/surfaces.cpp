@@ -76,7 +76,7 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
         if (whole) writer.clear();
         visible_.resolve(frame, writer);
         for (const Group& group : means)
-            group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
+            group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), outputs, writer);
         if (fillings > 0) SurfaceComposite::fill_host_holes(frame, targets, fillings);
     } else {
         targets.clear(outputs.ids);
@@ -99,7 +99,7 @@ void Surfaces::draw_means(const Frame& frame, const std::vector<Group>& groups, 
         targets.depth.download(frame.whole(), transfers_);
         SurfaceWriter writer(composite_.staging(frame, outputs), frame.whole(), {.ids = outputs.ids});
         writer.clear();
-        group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
+        group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), outputs, writer);
         composite_.draw(frame, targets, outputs, transfers_);
     }
 }

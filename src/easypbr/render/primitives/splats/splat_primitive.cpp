@@ -156,7 +156,7 @@ void for_each_light(const SplatTile& tile, const PixelRect& area, Put&& put) {
 }  // namespace
 
 void SplatPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
-                              SurfaceWriter& writer) {
+                              const SurfaceOutputs&, SurfaceWriter& writer) {
     compositor_.begin(frame, every(items),
                       [](const SplatProjector& projector, const DrawItem&, std::span<ProjectedSplat> splats) {
                           for (ProjectedSplat& splat : splats) add_color(projector, splat);

@@ -23,7 +23,7 @@ class SplatPrimitive final : public Primitive {
     bool is_mean() const override { return true; }
     bool has_driver() const override { return false; }
     void add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
-                  SurfaceWriter& writer) override;
+                  const SurfaceOutputs& outputs, SurfaceWriter& writer) override;
     bool lies_around() const override { return true; }
     void draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
                       const OverlayStep& step) override;

@@ -15,13 +15,14 @@ class SurfelPrimitive final : public Primitive {
         : splats_(caches.spacings, buffers_), layers_(splats_), shadows_(caches.spacings, buffers_) {}
 
     DrawMode mode() const override { return DrawMode::surfels; }
-    /// What is nearest at a pixel and within a band behind it is one surface, of whatever item.
+    /// What is nearest at a pixel and within a band behind it is one surface, of whatever item; or what is
+    /// nearest alone (SurfaceOutputs::one_surfel).
     void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
               const SurfaceOutputs& outputs) override;
     bool is_native(DrawItems) const override { return true; }
     bool is_mean() const override { return true; }
     void add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
-                  SurfaceWriter& writer) override;
+                  const SurfaceOutputs& outputs, SurfaceWriter& writer) override;
     bool has_native_layers(DrawItems) const override { return true; }
     void begin_mean_layers(const Frame& frame, DrawItems items, std::span<const float> opaque) override {
         layer_sources_ = sources_of(frame, items);
