@@ -21,6 +21,12 @@ namespace {
 /// Less than this of a frame is as good as nothing.
 constexpr float least_open = 1e-4f;
 
+/// What is added to what the coverage differs by, -1 to 1, so that denoisers are given no negative light.
+constexpr float least_coverage = 1;
+
+/// What a coverage of half precision may be rounded by.
+constexpr float rounded_coverage = 1e-3f;
+
 /// Light of the scene falls on the pixel: its radiance is an estimate.
 bool is_noisy(uint8_t kind) {
     return is_lit_by_scene(kind) || kind == uint8_t(SurfaceKind::ground_catcher);
@@ -67,6 +73,9 @@ class RadianceMean::FrameSurfaces {
         const float* depth = depth_.at(x, y);
         return depth && *depth > 0 && render::is_noisy(uint8_t(*material_.at(x, y) >> 24));
     }
+
+    /// That which is certain; see LayerGuides.
+    float coverage(int x, int y) const { return float(*albedo_.at(x, y) >> 48) / 65535; }
 
   private:
     friend RowOfFrame;
@@ -203,12 +212,12 @@ void RadianceMean::add_to_tile(size_t tile, const PixelRect& area, const FrameSu
         const PixelRect row{area.x, y, area.width, 1};
         const bool has_beside =
             native::add_noisy_row(rows.at(left, row, index_of(area.x, y)), y % TileGrid::side, noisy, beside);
-        add_row(tile, row, beside, has_beside);
+        add_row(tile, row, *surfaces, beside, has_beside);
     }
 }
 
-void RadianceMean::add_row(size_t tile, const PixelRect& row, const native::BesideNoisy& of_row,
-                           bool has_beside) {
+void RadianceMean::add_row(size_t tile, const PixelRect& row, const FrameSurfaces& surfaces,
+                           const native::BesideNoisy& of_row, bool has_beside) {
     if (!has_beside && weights_.empty() && coverage_.empty()) return;
     const HeldPixels<Vec4> sample(sample_);
     each(row, [&](size_t i, int x, int y) {
@@ -217,9 +226,10 @@ void RadianceMean::add_row(size_t tile, const PixelRect& row, const native::Besi
         const auto taken = Noisy(of_row.taken[at]);
         if (!weights_.empty())
             weights_[i] += Vec2(open_part(i), taken != Noisy::nothing ? open_part(i) : 0.0f);
-        const float coverage = sample.at(x, y)->w();
-        if (!coverage_.empty() && taken == Noisy::radiance)
-            coverage_[i] += Vec2(coverage, coverage * coverage);
+        if (!coverage_.empty() && taken == Noisy::radiance) {
+            const float by_chance = sample.at(x, y)->w() - surfaces.coverage(x, y);
+            coverage_[i] += Vec2(by_chance, by_chance * by_chance);
+        }
         if (!has_beside) return;
         const Vec4 beside(of_row.radiance[0][at], of_row.radiance[1][at], of_row.radiance[2][at],
                           of_row.radiance[3][at]);
@@ -357,7 +367,7 @@ const Target& RadianceMean::denoised(Denoising denoising, bool is_white, float w
 }
 
 std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfers& transfers) {
-    if (coverage_.empty()) return {};
+    if (!has_noisy_coverage()) return {};
     write_noisy_coverage();
     const auto result = denoised(denoising, true, 1, transfers).pixels<Vec4>();
     std::vector<float> changes(result.size());
@@ -367,10 +377,17 @@ std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfer
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
             const NoisyPixel pixel = noisy_pixel_at(*noisy, TileGrid::place_of(x, y));
             if (pixel.noisy == Noisy::radiance)
-                changes[i] = luminance(result[i].head<3>()) * float(pixel.frames) - coverage_[i].x();
+                changes[i] = (luminance(result[i].head<3>()) - least_coverage) * float(pixel.frames) -
+                             coverage_[i].x();
         });
     });
     return changes;
+}
+
+bool RadianceMean::has_noisy_coverage() const {
+    return std::ranges::any_of(coverage_, [&](const Vec2& sums) {
+        return sums.y() > rounded_coverage * rounded_coverage * float(frames_);
+    });
 }
 
 void RadianceMean::write_noisy_coverage() {
@@ -381,11 +398,12 @@ void RadianceMean::write_noisy_coverage() {
         if (!noisy) return;
         each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
             const NoisyPixel pixel = noisy_pixel_at(*noisy, TileGrid::place_of(x, y));
+            if (pixel.noisy == Noisy::coverage) to[i].head<3>() += Vec3::Constant(least_coverage);
             if (pixel.noisy != Noisy::radiance) return;
             const auto count = float(pixel.frames);
             const float mean = coverage_[i].x() / count, squares = coverage_[i].y() / count;
             const float variance = count > 1 ? std::max(0.0f, squares - mean * mean) / (count - 1) : squares;
-            to[i] = Vec4(mean, mean, mean, variance);
+            to[i] << Vec3::Constant(mean + least_coverage), variance;
         });
     });
 }

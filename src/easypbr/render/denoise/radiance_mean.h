@@ -23,8 +23,8 @@ class RadianceMean {
     /// Adds a frame's overlay, RGBA16F, before begin_frame(): each frame counts by what its overlay leaves of
     /// it.
     void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
-    /// `see_through`: what surfaces cover may be noisy as well as their light, since a shadow catcher is seen
-    /// through them.
+    /// `see_through`: what surfaces cover may be noisy as well as their light, where a shadow catcher or the
+    /// background is seen through them by chance: it differs from the alpha of their base colours.
     void begin_frame(const Frame& frame, bool see_through);
     /// Takes a frame's radiance, RGBA32F: written before add(), in either memory.
     const Target& sample() const { return sample_; }
@@ -66,7 +66,8 @@ class RadianceMean {
     void add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces);
     /// The same where nothing is noisy.
     void add_beside(size_t tile, const PixelRect& area);
-    void add_row(size_t tile, const PixelRect& row, const native::BesideNoisy& of_row, bool has_beside);
+    void add_row(size_t tile, const PixelRect& row, const FrameSurfaces& surfaces,
+                 const native::BesideNoisy& of_row, bool has_beside);
     /// Standard errors of what is displayed, over the pixels of a tile that show a surface.
     struct TileError {
         float mean = 0, quadratic = 0;
@@ -75,6 +76,7 @@ class RadianceMean {
     };
     TileError error_of(size_t tile, float exposure) const;
     void write_noisy_light();
+    bool has_noisy_coverage() const;
     void write_noisy_coverage();
     /// What light_ holds; see NoisyLight.
     const Target& denoised(Denoising denoising, bool is_white, float white, Transfers& transfers);
@@ -96,7 +98,8 @@ class RadianceMean {
     TilePixels<Sum> beside_;
     Target sample_;  ///< later a scratch target of denoisers, and the mean
     Target light_;
-    /// Of pixels that note radiance: sums of the coverage and of its square. Empty where it has no noise.
+    /// Of pixels that note radiance: sums of what the coverage differs by from that which is certain, and of
+    /// its square. Empty where it has no noise.
     PooledVector<Vec2> coverage_;
     PooledVector<Vec4> overlay_sum_;
     /// Of the frame: what its overlay leaves of the light. Empty: all.

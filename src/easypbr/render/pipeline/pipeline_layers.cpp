@@ -79,7 +79,7 @@ void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool
 void Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
                                 LayerKinds kinds, LitPicture& lit) {
     if (contents.paths) {
-        layer_guides_.begin(targets_, transfers_);
+        layer_guides_.begin(targets_, !frame.resolved->settings.background.shows_environment(), transfers_);
         lit.guides = &layer_guides_.surfaces();
     }
     lit.partly_covered |= timer_.run("transparency", [&] {
