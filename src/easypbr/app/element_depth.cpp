@@ -22,9 +22,9 @@ double depth_on_plane(const Plane& plane, const PixelRay& ray, double otherwise)
     return slant != 0 ? plane.normal.dot(plane.point - ray.origin) / slant : otherwise;
 }
 
-/// That of a surfel, in the camera's frame. One without a normal faces the camera.
-Plane plane_of_surfel(const MeshData& mesh, Eigen::Index vertex, const Eigen::Affine3d& T_cv_mesh,
-                      Projection projection) {
+/// That of a disc, in the camera's frame. One without a normal faces the camera.
+Plane plane_of_disc(const MeshData& mesh, Eigen::Index vertex, const Eigen::Affine3d& T_cv_mesh,
+                    Projection projection) {
     const Vec3d mean = T_cv_mesh * Vec3d(mesh.V.row(vertex).transpose().cast<double>()),
                 n = mesh.N.row(vertex).transpose().cast<double>();
     const Mat3d& turn = T_cv_mesh.linear();
@@ -57,8 +57,8 @@ double depth_on_vertex(const render::SurfaceFrame& frame, size_t drawn_pixel,
     if (frame.vertex_shapes[object] == Shape::splat)
         return std::max(render::splat_depth(mesh, vertex, T_cv_mesh, {ray.origin, ray.direction}),
                         frame.camera.near);
-    if (frame.vertex_shapes[object] != Shape::surfel) return drawn.depth;
-    const Plane plane = plane_of_surfel(mesh, vertex, T_cv_mesh, frame.camera.projection);
+    if (frame.vertex_shapes[object] != Shape::disc) return drawn.depth;
+    const Plane plane = plane_of_disc(mesh, vertex, T_cv_mesh, frame.camera.projection);
     const auto is_near = [&](double depth) {
         return std::abs(depth - drawn.depth) <= relative_depth_tolerance * drawn.depth;
     };

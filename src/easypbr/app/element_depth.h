@@ -25,8 +25,8 @@ struct DrawnPixel {
 /// drawn depth where the face is seen edge-on or the pixel only touches it.
 double depth_on_face(const std::array<Vec3d, 3>& corner, const PixelRay& ray, const DrawnPixel& drawn);
 
-/// The depth at which a pixel's ray sees a vertex that is drawn as a surfel, in its plane, or as a splat,
-/// where it is densest; the drawn depth where a surfel is seen edge-on or the pixel only touches it, and of
+/// The depth at which a pixel's ray sees a vertex that is drawn as a disc, in its plane, or as a splat,
+/// where it is densest; the drawn depth where a disc is seen edge-on or the pixel only touches it, and of
 /// all else.
 double depth_on_vertex(const render::SurfaceFrame& frame, size_t drawn_pixel,
                        const Eigen::Affine3d& T_cv_mesh, const PixelRay& ray, const DrawnPixel& drawn);

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/command_table.h"
 #include "easypbr/core/ascii.h"

@@ -52,7 +52,7 @@ double lens_reach(const Camera& camera);
 /// Whether project() tells where a point is: before the camera, within the reach of its lens.
 bool is_projected(const Camera& camera, double lens_reach, const Vec3d& point_cv);
 
-/// A face or a surfel is met in double precision by the ray itself, and a splat where it is densest along it,
+/// A face or a disc is met in double precision by the ray itself, and a splat where it is densest along it,
 /// so that the result does not have the rasteriser's rounding; other points have the depth that was drawn.
 Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app::LensMap& lens);
 

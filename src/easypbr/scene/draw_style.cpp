@@ -54,6 +54,10 @@ DrawMode natural_mode(const MeshData& mesh) {
     return mesh.E.empty() ? DrawMode::points : DrawMode::lines;
 }
 
+bool draws_discs(DrawMode mode) {
+    return mode == DrawMode::surfels;
+}
+
 DrawStyle resolve_style(const MeshData& mesh, const Style& overrides) {
     const Choice choice(overrides, mesh.style);
     DrawStyle style;

@@ -34,6 +34,9 @@ struct DrawStyle {
 /// those, faces as a mesh, normals with tangents as surfels, edges as lines, vertices alone as points.
 DrawMode natural_mode(const MeshData& mesh);
 
+/// Whether vertices are drawn as elliptic discs in the planes of their normals: surfels.
+bool draws_discs(DrawMode mode);
+
 /// The overrides' choice, else the object's own, else what follows from the data.
 DrawStyle resolve_style(const MeshData& mesh, const Style& overrides);
 

@@ -20,7 +20,8 @@ struct SurfaceOutputs {
     ExtensionSet extensions = 0;  ///< of the surfaces that are drawn; 0: all are of the core model
     bool whole = false;           ///< in host memory targets hold all of the frame, for what is added to them
     bool emission = false;        ///< in host memory emission is written, though nothing may emit
-    bool one_surfel = false;  ///< with ids: of surfels that overlap the nearest alone is seen, not their mean
+    /// With ids: where the primitives of a pixel are one surface, the nearest alone is seen, not their mean.
+    bool nearest_alone = false;
     const Peel* peel = nullptr;  ///< one layer of depth peeling is drawn, into targets cleared before
 };
 

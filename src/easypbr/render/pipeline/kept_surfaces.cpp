@@ -19,10 +19,10 @@ std::vector<uint32_t> parts_of_faces(const MeshData& mesh) {
     return parts;
 }
 
-/// Points beside surfels or splats have no shape of their own.
+/// Points beside discs or splats have no shape of their own.
 VertexShape vertex_shape_of(const DrawStyle& style, SplatDepth splats) {
     if (style.show_points) return VertexShape::none;
-    if (style.mode == DrawMode::surfels) return VertexShape::surfel;
+    if (draws_discs(style.mode)) return VertexShape::disc;
     const bool is_splat = style.mode == DrawMode::splats && splats != SplatDepth::expected;
     return is_splat ? VertexShape::splat : VertexShape::none;
 }
@@ -65,7 +65,7 @@ Shot KeptSurfaces::shot() const {
 void KeptSurfaces::draw(Pipeline& pipeline) const {
     const Frame frame = make_frame(shot(), 0, resolved_.camera, pipeline.bounds_of(drawable_.scene),
                                    list_.reaches_beyond_vertices());
-    pipeline.draw_surfaces(frame, list_, {.ids = true, .one_surfel = true});
+    pipeline.draw_surfaces(frame, list_, {.ids = true, .nearest_alone = true});
 }
 
 SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) const {

@@ -148,7 +148,7 @@ void Renderer::prepare(Picture& picture) {
         keep_surfaces(picture.scene, resolved, options.size, picture.images);
         picture.holds_surfaces = options.samples == 1 && !all.has(shows_more) && !all.has_soft_surfaces() &&
                                  !all.extensions() && !GroundPass::is_on(resolved) &&
-                                 all.of(DrawMode::surfels).empty();
+                                 !all.has([](const DrawItem& item) { return draws_discs(item.style.mode); });
     }
     const bool traces_paths = resolved.traces_paths && (options.samples > 1 || resolved.asks_for_paths);
     picture.contents = {.ids = options.ids || picture.holds_surfaces,

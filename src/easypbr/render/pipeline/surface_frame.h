@@ -12,8 +12,8 @@ namespace easypbr::render {
 /// What shape tells more of the vertices of an object than the depth that was drawn of them.
 enum class VertexShape {
     none,
-    surfel,  ///< flat
-    splat    ///< a Gaussian, seen where it is densest along the ray
+    disc,  ///< flat, about the vertex
+    splat  ///< a Gaussian, seen where it is densest along the ray
 };
 
 /// Never anti-aliased, blended or filtered; row 0 on top. A blended surface stands where it is half opaque or

@@ -116,7 +116,7 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
 }
 
 void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSource>& sources,
-                                std::span<const float> opaque, bool one_surfel, Vec2i place,
+                                std::span<const float> opaque, bool nearest_alone, Vec2i place,
                                 std::span<const uint64_t> entries, SurfaceWriter& writer) const {
     if (entries.empty()) return;
     SurfelTile& t = tile_of_thread();
@@ -136,7 +136,7 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
         const SurfelProjection& s = t.projections[k];
         bool may_be_seen = false;
         t.for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
-            const float pushed = one_surfel ? hit.z : hit.z + s.band;
+            const float pushed = nearest_alone ? hit.z : hit.z + s.band;
             if (hit.z > t.hidden[i]) return;
             may_be_seen |= hit.z <= t.limit[i];
             if (pushed > t.limit[i] || (pushed == t.limit[i] && vertex > t.nearest[i])) return;
@@ -153,7 +153,7 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
         t.add<false>(sources[source_of(entries[k])], surfel_of(entries[k]), t.projections[k],
                      [&](size_t i, const SurfelProjection::Hit& hit) {
                          return hit.z <= t.hidden[i] && hit.z <= t.limit[i] &&
-                                (!one_surfel || vertex == t.nearest[i]);
+                                (!nearest_alone || vertex == t.nearest[i]);
                      });
     }
     t.for_all([&](int x, int y, size_t i) {
@@ -167,11 +167,11 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
 }
 
 void SoftwareSurfels::draw(const Frame& frame, const std::vector<SurfelSource>& sources,
-                           std::span<const float> opaque, bool one_surfel, SurfaceWriter& writer) {
+                           std::span<const float> opaque, bool nearest_alone, SurfaceWriter& writer) {
     bin(sources, frame.size);
     const int columns = tiles_of(frame.size).x();
     parallel_for(first_.size() - 1, 1, [&](size_t tile) {
-        draw_tile(frame, sources, opaque, one_surfel, Vec2i(int(tile) % columns, int(tile) / columns),
+        draw_tile(frame, sources, opaque, nearest_alone, Vec2i(int(tile) % columns, int(tile) / columns),
                   entries_of(tile), writer);
     });
 }

@@ -12,9 +12,10 @@ namespace easypbr::render {
 class SoftwareSurfels {
   public:
     /// `opaque`: reversed depth of what hides surfels, for the whole frame row by row. `writer` holds the
-    /// same frame, and keeps what is nearer. `one_surfel`: each pixel's surface is the nearest surfel alone.
+    /// same frame, and keeps what is nearer. `nearest_alone`: each pixel's surface is the nearest surfel
+    /// alone.
     void draw(const Frame& frame, const std::vector<SurfelSource>& sources, std::span<const float> opaque,
-              bool one_surfel, SurfaceWriter& writer);
+              bool nearest_alone, SurfaceWriter& writer);
 
     // Layers, see SurfelLayers: begin_layers() once, then add_layer() for each, with the same sources.
 
@@ -37,7 +38,7 @@ class SoftwareSurfels {
         return {entries_.data() + first_[tile], first_[tile + 1] - first_[tile]};
     }
     void draw_tile(const Frame& frame, const std::vector<SurfelSource>& sources,
-                   std::span<const float> opaque, bool one_surfel, Vec2i place,
+                   std::span<const float> opaque, bool nearest_alone, Vec2i place,
                    std::span<const uint64_t> entries, SurfaceWriter& writer) const;
     bool add_layer(const Frame& frame, const std::vector<SurfelSource>& sources, Vec2i place,
                    std::span<const uint64_t> entries, PeelLimits& limits, SurfaceWriter& writer);

@@ -30,7 +30,7 @@ std::vector<SurfelSource> SurfelPrimitive::sources_of(const Frame& frame, DrawIt
 
 void SurfelPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
                                const SurfaceOutputs& outputs, SurfaceWriter& writer) {
-    software_.draw(frame, sources_of(frame, items), hides, outputs.one_surfel, writer);
+    software_.draw(frame, sources_of(frame, items), hides, outputs.nearest_alone, writer);
 }
 
 ShadowShape SurfelPrimitive::shadow_shape(const DrawItem& item) {

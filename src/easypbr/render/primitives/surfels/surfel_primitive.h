@@ -16,7 +16,7 @@ class SurfelPrimitive final : public Primitive {
 
     DrawMode mode() const override { return DrawMode::surfels; }
     /// What is nearest at a pixel and within a band behind it is one surface, of whatever item; or what is
-    /// nearest alone (SurfaceOutputs::one_surfel).
+    /// nearest alone (SurfaceOutputs::nearest_alone).
     void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
               const SurfaceOutputs& outputs) override;
     bool is_native(DrawItems) const override { return true; }

@@ -46,8 +46,8 @@ double SurfelShadows::reach(const DrawItem& item) {
 
 auto SurfelShadows::ellipses_of(const ShadowView& view, const DrawItem& item, int resolution) {
     const Mat4d clip_from_mesh = view.clip_from_world() * item.object->T_world_mesh.matrix();
-    return [&mesh = item.mesh(), clip_from_mesh, linear = linear_of(item), light = light_in_mesh(view, item), resolution,
-            radius = float(radius(item)), scale = item.style.surfel_scale](size_t i) {
+    return [&mesh = item.mesh(), clip_from_mesh, linear = linear_of(item), light = light_in_mesh(view, item),
+            resolution, radius = float(radius(item)), scale = item.style.surfel_scale](size_t i) {
         const Vec3 at = mesh.V.row(Eigen::Index(i));
         const Vec3 to_light = (light.head<3>() - light.w() * at).normalized();
         const auto [t, b] = surfel_axes(mesh, Eigen::Index(i), to_light, radius, scale);

@@ -33,7 +33,7 @@ void SurfelSplats::sum(const Frame& frame, std::span<const DrawItem> items, cons
 
     const float zero[4] = {0, 0, 0, 0};
     for (unsigned i = 0; i < 3; ++i) sums_.clear_color(i, zero);
-    if (outputs.one_surfel) {
+    if (outputs.nearest_alone) {
         id_.bind(1);
         element_.bind(2);
     }
@@ -65,8 +65,8 @@ void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, const Sur
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
     if (accumulate) defines.emplace_back("ACCUMULATE");
-    if ((!accumulate || outputs.one_surfel) && outputs.ids) defines.emplace_back("OBJECT_ID");
-    if (outputs.one_surfel) defines.emplace_back("ONE_SURFEL");
+    if ((!accumulate || outputs.nearest_alone) && outputs.ids) defines.emplace_back("OBJECT_ID");
+    if (outputs.nearest_alone) defines.emplace_back("ONE_SURFEL");
     const gl::Program& program = splats_.get(defines);
     program.use();
     set_depth_uniform(program, frame);
@@ -82,7 +82,7 @@ void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, const Sur
     program.set("u_base_color", Vec4(m.base_color.x(), m.base_color.y(), m.base_color.z(), m.opacity));
     program.set("u_alpha_cutoff", m.alpha_cutoff);
     program.set("u_eye", Vec3(eye.cast<float>()));
-    const float band = outputs.one_surfel ? 0 : float(T.linear().col(0).norm());
+    const float band = outputs.nearest_alone ? 0 : float(T.linear().col(0).norm());
     program.set("u_surfel",
                 Vec4(item.style.surfel_scale, float(spacing_of(item)), float(frame.camera.near), band));
     program.set("u_least_radius", native::least_ellipse_radius);
@@ -90,13 +90,14 @@ void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, const Sur
     program.set("u_material", Vec3(m.metallic, m.roughness, code_of(item.kind)));
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_depth_target", 0);
-    if (outputs.one_surfel && accumulate) {
+    if (outputs.nearest_alone && accumulate) {
         program.set("u_id", 1);
         program.set("u_element", 2);
     }
     const bool farthest = outputs.peel && outputs.peel->farthest;
     gl::DrawState state{.depth_test = gl::DepthTest::greater, .write_depth = !accumulate};
-    if (accumulate) state.depth_test = outputs.one_surfel ? gl::DepthTest::off : gl::DepthTest::greater_equal;
+    if (accumulate)
+        state.depth_test = outputs.nearest_alone ? gl::DepthTest::off : gl::DepthTest::greater_equal;
     // Before the near plane all bands end alike.
     if (farthest) state.depth_test = gl::DepthTest::less_equal;
     if (accumulate) state.blending = gl::add;
