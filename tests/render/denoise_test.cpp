@@ -189,6 +189,23 @@ TEST(Denoise, OtherKindsOfNoiseGoBeside) {
     EXPECT_EQ(pixel.frames, 1u);
 }
 
+// A layer that covers a half, over a ground with a shadow of a half: 0.75 is covered, and the layer alone
+// sends light back. A step of 1 / 65535 of rounding each.
+TEST(Denoise, ShadowsBehindLayersSendNoLight) {
+    for (const bool layered : {true, false}) {
+        native::NoisyTile tile;
+        native::BesideNoisy beside;
+        FrameRow row;
+        row.set(7, Vec3(0, 0, 1), Vec3(0.8f, 0.8f, 0.8f), 0.5f);
+        row.albedos[7] |= uint64_t(32768) << 48;
+        row.samples[7] = Vec4(0.4f, 0.4f, 0.4f, 0.75f);
+        native::NoisyRow noisy = row.row();
+        noisy.layered = layered;
+        native::add_noisy_row(noisy, 0, tile, beside);
+        EXPECT_NEAR(tile.reflectance[0][7], 65535 * 0.8 * (layered ? 0.5 : 0.75), 2) << layered;
+    }
+}
+
 // Even light stays even, with a fraction of its noise: the mean over a part of the picture within 1 %, and
 // the deviation, of a tenth, below a fiftieth.
 TEST(Denoise, FilterSmoothsEvenLight) {

@@ -378,6 +378,7 @@ struct NoisyRow {
     int end_of_lit = 0, catcher = 0;  ///< codes of surfaces: light falls on those below the first
     bool orthographic = false;
     bool over_nothing = false;  ///< of shadow catchers the coverage is noisy
+    bool layered = false;       ///< alpha of the albedo is the surfaces' part of the coverage
 };
 
 /// What is not noisy of a row, and of which pixels light was taken, as NoisyTile::noisy.

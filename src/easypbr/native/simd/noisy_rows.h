@@ -95,7 +95,9 @@ INLINE bool add_noisy_lanes(const NoisyRow& row, int first, int place, NoisyTile
         load_halves(row.albedo + first, red_green, blue);
         const vec3 base(to_float(red_green & 0xffffu) / 65535.0f, to_float(red_green >> 16) / 65535.0f,
                         to_float(blue & 0xffffu) / 65535.0f);
-        const vec3 part_of_light = sent_back(base, to_float(material & 0xffu) / 255.0f, sample.w);
+        // Shadows that are seen through layers cover without sending light.
+        const vfloat coverage = row.layered ? min(sample.w, to_float(blue >> 16) / 65535.0f) : sample.w;
+        const vec3 part_of_light = sent_back(base, to_float(material & 0xffu) / 255.0f, coverage);
         const vec3 normal = decoded_normal(load<Uints>(row.normal + first));
         for (int c = 0; c < 3; ++c) {
             move_steps(tile.normal[c] + place, taken, (normal[c] + 1.0f) * 0.5f, part);

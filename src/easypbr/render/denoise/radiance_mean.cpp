@@ -58,7 +58,7 @@ PixelRect common(const PixelRect& a, const PixelRect& b) {
 
 class RadianceMean::FrameSurfaces {
   public:
-    FrameSurfaces(const Frame& frame, const GBuffer& surfaces)
+    FrameSurfaces(const Frame& frame, const GBuffer& surfaces, bool layered)
         : albedo_(surfaces.albedo),
           normal_(surfaces.normal),
           material_(surfaces.material),
@@ -66,6 +66,7 @@ class RadianceMean::FrameSurfaces {
         row_.end_of_lit = int(SurfaceKind::display);
         row_.catcher = int(SurfaceKind::ground_catcher);
         row_.orthographic = frame.orthographic();
+        row_.layered = layered;
         row_.over_nothing = !frame.resolved->settings.background.shows_environment();
     }
 
@@ -180,7 +181,7 @@ void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer&
         for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
             target->download(area, transfers);
     std::optional<FrameSurfaces> of_frame;
-    if (notes_surfaces_) of_frame.emplace(frame, surfaces);
+    if (notes_surfaces_) of_frame.emplace(frame, surfaces, !coverage_.empty());
     const std::vector<size_t> tiles = tiles_.tiles_in(area);
     parallel_for(tiles.size(), 16, [&](size_t i) {
         if (!tiles_.has_ended(tiles[i]))
