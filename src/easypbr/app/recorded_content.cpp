@@ -39,8 +39,8 @@ RestingGround::RestingGround(Session& session, const ResolvedSettings& resolved,
     if (resolved.settings.ground.mode == GroundMode::none) return;
     const Vec3d up = parse_up(resolved.settings.camera.up);
     double lowest = height_.value_or(std::numeric_limits<double>::infinity());
-    for (const double time_s : std::views::reverse(times_s)) {
-        put(time_s);
+    for (auto time_s = times_s.rbegin(); time_s != times_s.rend(); ++time_s) {
+        put(*time_s);
         const SceneSnapshot scene = session.scene().snapshot();
         const detail::Content content(scene, session.settings().style);
         lowest = std::min(lowest, detail::ground_below(content.bounds(), up));

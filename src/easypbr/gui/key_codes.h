@@ -57,7 +57,7 @@ class KeyCodes {
         constexpr int control = 2;
         const bool is_letter = name && ascii::is_alpha(name[0]) && name[1] == 0;
         if (!is_letter) return without_keypad(key, modifiers);
-        const int letter = ascii::to_upper(name[0]);
+        const int letter = static_cast<unsigned char>(ascii::to_upper(name[0]));
         return !(modifiers & control) && (flies(key) || flies(letter)) ? key : letter;
     }
 
