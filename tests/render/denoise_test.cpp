@@ -67,9 +67,8 @@ struct Made {
         };
         for (int c = 0; c < 3; ++c) tile.light[c][place] = float(frames) * value[c];
         tile.squares[place] = sum_of(std::pow(luminance(value), 2.0f), pixel.w());
-        const auto of_hue = [](const Vec3& c) { return c.x() * c.x() + c.z() * c.z(); };
-        tile.hue_squares[place] =
-            sum_of(of_hue(value), deviation * deviation * of_hue(mean) + of_hue(turned));
+        tile.color_squares[place] =
+            sum_of(value.squaredNorm(), deviation * deviation * mean.squaredNorm() + turned.squaredNorm());
         tile.noisy[place] = uint8_t(Noisy::radiance);
     }
     NoisyLight noisy() const { return {light, pixels, scratch}; }
@@ -184,7 +183,7 @@ TEST(Denoise, OtherKindsOfNoiseGoBeside) {
     const NoisyPixel pixel = noisy_pixel_at(tile, 7);
     EXPECT_EQ(pixel.light, Vec3(4, 4, 4));
     EXPECT_NEAR(pixel.squares, 16, 1e-5);
-    EXPECT_NEAR(pixel.hue_squares, 32, 1e-5);
+    EXPECT_NEAR(pixel.color_squares, 48, 1e-5);
     EXPECT_EQ(pixel.alpha, 1);
     EXPECT_EQ(pixel.frames, 1u);
 }

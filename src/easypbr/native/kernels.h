@@ -357,7 +357,7 @@ struct NoisyTile {
 
     float light[3][pixels] = {};           ///< sum of the radiance, or of the coverage in each channel
     float squares[pixels] = {};            ///< sum, of the luminance
-    float hue_squares[pixels] = {};        ///< sum, of red and of blue
+    float color_squares[pixels] = {};      ///< sum, of all three channels
     float alpha[pixels] = {};              ///< sum, by what overlays leave; 0 where coverage is noisy
     float depth[pixels] = {};              ///< mean of its log2, of orthographic pictures of itself
     uint32_t frames[pixels] = {};          ///< that have noisy light

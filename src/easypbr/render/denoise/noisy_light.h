@@ -36,17 +36,15 @@ enum class Noisy : uint8_t { nothing, radiance, coverage };
 struct NoisyPixel {
     Vec3 light = Vec3::Zero();  ///< radiance, or the coverage in each channel
     float squares = 0;          ///< of the luminance
-    float hue_squares = 0;      ///< of red and of blue
+    float color_squares = 0;    ///< of all three channels
     float alpha = 0;            ///< weighted by the transmittance of overlays; 0 where coverage is noisy
     uint32_t frames = 0;
     Noisy noisy = Noisy::nothing;
 
     /// Of the mean's luminance, by the sample variance; of one frame its own square.
     float variance() const { return variance_of(squares, std::pow(luminance(light), 2.0f)); }
-    /// The same of the mean's red and blue, in all.
-    float hue_variance() const {
-        return variance_of(hue_squares, light.x() * light.x() + light.z() * light.z());
-    }
+    /// The same of the mean's channels, in all.
+    float color_variance() const { return variance_of(color_squares, light.squaredNorm()); }
 
   private:
     float variance_of(float squares_of, float square_of_sum) const {
@@ -60,7 +58,7 @@ struct NoisyPixel {
 inline NoisyPixel noisy_pixel_at(const native::NoisyTile& tile, size_t place) {
     return {{tile.light[0][place], tile.light[1][place], tile.light[2][place]},
             tile.squares[place],
-            tile.hue_squares[place],
+            tile.color_squares[place],
             tile.alpha[place],
             tile.frames[place],
             Noisy(tile.noisy[place])};
