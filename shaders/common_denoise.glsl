@@ -1,6 +1,6 @@
 // What denoisers are guided by: edges of what the surfaces are (SVGF; Schied et al. 2017, section 4.4).
 uniform sampler2D u_light;   // divided by the surface's reflectance; a: variance of the mean's luminance
-uniform sampler2D u_guides;  // packed normal and reflectance, log2 of the depth, the colour's noise; see Guides
+uniform sampler2D u_guides;  // packed normal and reflectance, log2 of the depth, the number of frames
 uniform vec2 u_size;
 
 // Falls of the weights: over the square of the normals' difference (that of cos^128), of the reflectances', and over the
@@ -21,12 +21,6 @@ float compressed_noise(float bright, float variance) {
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
-// A colour likewise: as bright as that of its luminance.
-vec3 compressed_color(vec3 light) {
-    float bright = luminance(light);
-    return light * (compressed(bright) / max(bright, 1e-20));
-}
-
 vec3 unpacked(float bits) { return unpackUnorm4x8(floatBitsToUint(bits)).rgb; }
 
 float depth_at(ivec2 texel) { return texelFetch(u_guides, texel, 0).b; }
@@ -38,8 +32,7 @@ struct Guides {
     vec3 normal, reflectance;  // 0 to 1 each
     float depth;               // log2
     vec2 slope;                // of the depth, per pixel
-    vec3 shares;               // of the channels in what the surface sends back, of length 1
-    float color_noise;         // its variance in parts of that of luminance; 0: no frame shows a surface
+    float frames;
     float normal_fall;
 };
 
@@ -50,18 +43,11 @@ Guides guides_at(ivec2 here) {
     g.normal = unpacked(guides.r);
     g.reflectance = unpacked(guides.g);
     g.depth = guides.b;
-    g.shares = normalize(max(g.reflectance, vec3(0.001)));
-    g.color_noise = guides.a;
+    g.frames = guides.a;
     g.normal_fall = normal_fall;
     g.slope = vec2(slope(depth_at(max(here - ivec2(1, 0), ivec2(0))), g.depth, depth_at(min(here + ivec2(1, 0), last))),
                    slope(depth_at(max(here - ivec2(0, 1), ivec2(0))), g.depth, depth_at(min(here + ivec2(0, 1), last))));
     return g;
-}
-
-// The square of a difference of colours, as that of the luminance of light without a hue.
-float color_square(Guides own, vec3 difference) {
-    vec3 seen = own.shares * difference;
-    return dot(seen, seen);
 }
 
 // A whole number and a part, 0 to 1, in one.

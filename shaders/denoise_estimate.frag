@@ -1,11 +1,9 @@
-// What few frames tell badly, from the same surface around: a pixel's luminance and colour, and how far they vary. The variance of a
+// What few frames tell badly, from the same surface around: a pixel's luminance, and how far it varies. The variance of a
 // single pixel is zero where all its paths were dark.
 #include "common_denoise.glsl"
 
 // Luminance, compressed(), and its variance; variance of the pixel's own light; see packed_fall().
 layout(location = 0) out vec4 o_estimate;
-// compressed_color(), and its variance.
-layout(location = 1) out vec4 o_estimated_color;
 
 const int reach = 2;
 // The variance of few frames may be as much too small.
@@ -65,8 +63,6 @@ void main() {
     own.normal_fall = fall_around(here, own);
     vec4 light_here = texelFetch(u_light, here, 0);
     float sum = 0.0, squares = 0.0, noise = 0.0, noise_of_sum = 0.0, weights = 0.0, weights2 = 0.0;
-    vec3 color = vec3(0.0);
-    float color_squares = 0.0, color_noise = 0.0;
     vec3 linear = vec3(0.0);  // sums of luminances, of their squares, and of their variances
     float brightest = 0.0;
     for (int y = -reach; y <= reach; ++y) {
@@ -79,13 +75,9 @@ void main() {
             float shining = luminance(light.rgb);
             float bright = compressed(shining), of_bright = compressed_noise(shining, light.a);
             weight = inside && guides.a > 0.0 ? weight : 0.0;
-            vec3 hued = light.rgb * (bright / max(shining, 1e-20));
             sum += weight * bright;
             squares += weight * bright * bright;
             noise += weight * of_bright;
-            color += weight * hued;
-            color_squares += weight * color_square(own, hued);
-            color_noise += weight * guides.a * of_bright;
             noise_of_sum += weight * weight * of_bright;
             weights += weight;
             weights2 += weight * weight;
@@ -104,18 +96,12 @@ void main() {
     float pixels = weights * weights / max(weights2, 1e-10);
     float around = max(squares * scale - bright * bright, 0.0) * pixels / max(pixels - 1.0, 1.0);
     // What noise does not explain is detail, which the pixel itself tells (Lee 1980).
-    color = color * scale;
-    color_noise *= scale;
-    float color_around = max(color_squares * scale - color_square(own, color), 0.0) * pixels / max(pixels - 1.0, 1.0);
-    float explained = min(noise / max(around, 1e-20), color_noise / max(color_around, 1e-20));
-    float detail = noise > 0.0 ? clamp(1.0 - doubt * explained, 0.0, 1.0) : 1.0;
+    float detail = noise > 0.0 ? clamp(1.0 - doubt * noise / max(around, 1e-20), 0.0, 1.0) : 1.0;
     float left = part * bright_here, own_variance = part * part * light_here.a;
     float variance = max(compressed_noise(left, own_variance), noise);
     // The noise around as that of light as bright as the pixel's.
     float as_bright = min(noise * (1.0 + left) * (1.0 + left), linear.z * scale);
-    float of_estimate = max(detail * detail * variance + (1.0 - detail) * (1.0 - detail) * noise_of_sum, noise_of_sum);
-    o_estimate = vec4(mix(bright, compressed(left), detail), of_estimate,
+    o_estimate = vec4(mix(bright, compressed(left), detail),
+                      max(detail * detail * variance + (1.0 - detail) * (1.0 - detail) * noise_of_sum, noise_of_sum),
                       max(own_variance, as_bright), packed_fall(own.normal_fall, part));
-    o_estimated_color = vec4(mix(color, compressed_color(part * light_here.rgb), detail),
-                             of_estimate * (noise > 0.0 ? color_noise / noise : own.color_noise));
 }

@@ -357,7 +357,6 @@ struct NoisyTile {
 
     float light[3][pixels] = {};           ///< sum of the radiance, or of the coverage in each channel
     float squares[pixels] = {};            ///< sum, of the luminance
-    float color_squares[pixels] = {};      ///< sum, of all three channels
     float alpha[pixels] = {};              ///< sum, by what overlays leave; 0 where coverage is noisy
     float depth[pixels] = {};              ///< mean of its log2, of orthographic pictures of itself
     uint32_t frames[pixels] = {};          ///< that have noisy light
@@ -365,7 +364,7 @@ struct NoisyTile {
     uint16_t reflectance[3][pixels] = {};  ///< mean, linear, 65535 for 1
     uint8_t noisy[pixels] = {};            ///< what is: 0 nothing, 1 radiance, 2 coverage
 };
-static_assert(sizeof(NoisyTile) == 45 * NoisyTile::pixels, "there is one for each pixel");
+static_assert(sizeof(NoisyTile) == 41 * NoisyTile::pixels, "there is one for each pixel");
 
 /// A frame's pixels of a row of a tile.
 struct NoisyRow {

@@ -116,7 +116,6 @@ using u_ambient_occlusion = R16;
 using u_surface = Rgba32f;
 using u_light = Rgba32f;
 using u_estimate = Rgba32f;
-using u_estimated_color = Rgba32f;
 using u_guides = Rgba32f;
 using u_visibility = R16;
 using u_shadow_maps = Layers;

@@ -20,32 +20,16 @@ constexpr float least_reflectance = 0.001f;
 /// or puts them back.
 void change_colors(const Target& light, const NoisyLight& noisy, bool out) {
     const auto pixels = light.pixels<Vec4>();
-    noisy.each([&](size_t i, const SurfaceMean& surface, const NoisyPixel& pixel) {
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy of) {
         if (surface.frames == 0) return;
         const Vec3 color = noisy.reflectance(surface).cwiseMax(least_reflectance) *
-                           (pixel.noisy == Noisy::radiance ? noisy.white : 1.0f);
+                           (of == Noisy::radiance ? noisy.white : 1.0f);
         const float of_luminance = luminance(color);
         const Vec3 light_rgb = pixels[i].head<3>();
         pixels[i].head<3>() =
             out ? Vec3(light_rgb.cwiseQuotient(color)) : Vec3(light_rgb.cwiseProduct(color));
         if (out) pixels[i].w() = pixels[i].w() / of_luminance / of_luminance;
     });
-}
-
-/// The variance of light's colour in parts of that of its luminance, over the reflectance each: 1 of noise
-/// without a hue. 0 where no frame shows a surface.
-float color_noise(const NoisyLight& noisy, const SurfaceMean& surface, const NoisyPixel& pixel) {
-    if (surface.frames == 0) return 0;
-    // Of light that does not vary it is not known. Where it is said to be noise all the same, much of it may
-    // be of few paths.
-    constexpr float unknown = 8, most = 1e4f;
-    if (noisy.is_white) return 1;
-    const Vec3 color = noisy.reflectance(surface).cwiseMax(least_reflectance);
-    const float of_color = pixel.color_variance() / color.squaredNorm(),
-                of_luminance = pixel.variance() / std::pow(luminance(color), 2.0f);
-    return of_luminance > 0 ? std::clamp(of_color / of_luminance, 1 / most, most)
-           : of_color > 0   ? most
-                            : unknown;
 }
 
 /// Numbers from 0 to 1 in eight bits each, as unpackUnorm4x8() of GLSL reads them from a float's bits.
@@ -60,9 +44,9 @@ float packed(const Vec3& values) {
 void EdgeAvoidingFilter::write_guides(const NoisyLight& noisy) {
     guides_.write(guides_.whole());
     const auto to = guides_.pixels<Vec4>();
-    noisy.each([&](size_t i, const SurfaceMean& surface, const NoisyPixel& pixel) {
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy /*of*/) {
         to[i] = Vec4(packed(SurfaceMean::values(surface.normal)), packed(noisy.reflectance(surface)),
-                     surface.depth, color_noise(noisy, surface, pixel));
+                     surface.depth, float(surface.frames));
     });
 }
 
@@ -70,7 +54,7 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
     const Target *from = &noisy.light, *to = &noisy.scratch;
     const PixelRect whole = from->whole();
     change_colors(*from, noisy, true);
-    for (Target* own : {&guides_, &estimate_, &estimated_color_})
+    for (Target* own : {&guides_, &estimate_})
         if (own->size() != from->size()) *own = Target(gl::Format::rgba32f, from->size());
     write_guides(noisy);
     const auto inputs = [&] {
@@ -86,18 +70,14 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
                   last = std::min(end + first_reach, whole.height);
         const PixelRect estimated{0, first, whole.width, last - first};
         estimate_.write(estimated);
-        estimated_color_.write(estimated);
-        estimating_.shade(inputs(), {.target = &estimate_, .area = estimated, .further = {&estimated_color_}},
-                          transfers);
+        estimating_.shade(inputs(), {.target = &estimate_, .area = estimated}, transfers);
         ShaderInputs values = inputs();
         values.define("ESTIMATED");
         values.set("u_estimate", estimate_);
-        values.set("u_estimated_color", estimated_color_);
         values.set("u_step", 1);
         smooth_.shade(values, {.target = to, .area = {0, y, whole.width, end - y}}, transfers);
     }
     estimate_.release();
-    estimated_color_.release();
     for (int level = 1; level < levels; ++level) {
         std::swap(from, to);
         to->write(whole);

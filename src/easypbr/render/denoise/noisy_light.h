@@ -1,12 +1,9 @@
 // What denoisers are given.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
-#include "easypbr/core/luminance.h"
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/native/kernels.h"
@@ -36,29 +33,14 @@ enum class Noisy : uint8_t { nothing, radiance, coverage };
 struct NoisyPixel {
     Vec3 light = Vec3::Zero();  ///< radiance, or the coverage in each channel
     float squares = 0;          ///< of the luminance
-    float color_squares = 0;    ///< of all three channels
     float alpha = 0;            ///< weighted by the transmittance of overlays; 0 where coverage is noisy
     uint32_t frames = 0;
     Noisy noisy = Noisy::nothing;
-
-    /// Of the mean's luminance, by the sample variance; of one frame its own square.
-    float variance() const { return variance_of(squares, std::pow(luminance(light), 2.0f)); }
-    /// The same of the mean's channels, in all.
-    float color_variance() const { return variance_of(color_squares, light.squaredNorm()); }
-
-  private:
-    float variance_of(float squares_of, float square_of_sum) const {
-        const auto count = float(frames);
-        const float mean_square = squares_of / count;
-        return frames > 1 ? std::max(0.0f, mean_square - square_of_sum / count / count) / (count - 1)
-                          : mean_square;
-    }
 };
 
 inline NoisyPixel noisy_pixel_at(const native::NoisyTile& tile, size_t place) {
     return {{tile.light[0][place], tile.light[1][place], tile.light[2][place]},
             tile.squares[place],
-            tile.color_squares[place],
             tile.alpha[place],
             tile.frames[place],
             Noisy(tile.noisy[place])};
@@ -86,7 +68,7 @@ struct NoisyLight {
         return is_white ? Vec3(Vec3::Ones()) : surface.mean_reflectance();
     }
 
-    /// Calls visit(index, surface, NoisyPixel) for each pixel, by its index row by row, on all cores.
+    /// Calls visit(index, surface, of what light is) for each pixel, by its index row by row, on all cores.
     template <class Visit>
     void each(Visit&& visit) const {
         const TileGrid& grid = pixels.grid();
@@ -98,7 +80,7 @@ struct NoisyLight {
                     const size_t place = TileGrid::place_of(x, y);
                     visit(size_t(y) * size_t(grid.size().x()) + size_t(x),
                           of ? noisy_surface_at(*of, place) : SurfaceMean(),
-                          of ? noisy_pixel_at(*of, place) : NoisyPixel());
+                          of ? Noisy(of->noisy[place]) : Noisy::nothing);
                 }
         });
     }

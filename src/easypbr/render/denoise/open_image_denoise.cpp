@@ -154,15 +154,15 @@ const Target& OpenImageDenoise::denoise(const NoisyLight& noisy) {
     std::vector<Vec3> normal(count, Vec3::Zero()), albedo(count, Vec3::Zero());
     const std::span<Vec4> light = noisy.light.pixels<Vec4>(), output = noisy.scratch.pixels<Vec4>();
     // A catcher beside surfaces is a white one, whose shadows are dark: what it lets through.
-    const auto turn_coverage = [&](std::span<Vec4> values, size_t i, const NoisyPixel& pixel) {
-        if (!noisy.is_white && pixel.noisy == Noisy::coverage)
+    const auto turn_coverage = [&](std::span<Vec4> values, size_t i, Noisy of) {
+        if (!noisy.is_white && of == Noisy::coverage)
             values[i].head<3>() = Vec3::Ones() - values[i].head<3>();
     };
-    noisy.each([&](size_t i, const SurfaceMean& surface, const NoisyPixel& pixel) {
+    noisy.each([&](size_t i, const SurfaceMean& surface, Noisy of) {
         if (surface.frames == 0) return;
         normal[i] = surface.mean_normal();
         albedo[i] = noisy.reflectance(surface);
-        turn_coverage(light, i, pixel);
+        turn_coverage(light, i, of);
     });
     void* filter = oidn->new_filter(device_, "RT");
     const auto image = [&](const char* name, auto pixels) {
@@ -179,9 +179,7 @@ const Target& OpenImageDenoise::denoise(const NoisyLight& noisy) {
     oidn->execute_filter(filter);
     oidn->release_filter(filter);
     check(*oidn, device_);
-    noisy.each([&](size_t i, const SurfaceMean& /*surface*/, const NoisyPixel& pixel) {
-        turn_coverage(output, i, pixel);
-    });
+    noisy.each([&](size_t i, const SurfaceMean& /*surface*/, Noisy of) { turn_coverage(output, i, of); });
     return noisy.scratch;
 }
 

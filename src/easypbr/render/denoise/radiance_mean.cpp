@@ -32,6 +32,13 @@ bool is_noisy(uint8_t kind) {
     return is_lit_by_scene(kind) || kind == uint8_t(SurfaceKind::ground_catcher);
 }
 
+/// Of a mean's luminance, by the sample variance; of one frame its own square.
+float variance_of(const NoisyPixel& pixel) {
+    const auto count = float(pixel.frames);
+    const float bright = luminance(pixel.light) / count, squares = pixel.squares / count;
+    return count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
+}
+
 /// By how much what is displayed differs where radiance, after exposure, does by a little.
 float display_slope(float radiance) {
     constexpr float gamma = 2.2f, darkest = 0.02f;
@@ -273,7 +280,7 @@ RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) cons
         const NoisyPixel pixel = noisy_pixel_at(*noisy, TileGrid::place_of(x, y));
         const uint32_t count = pixel.frames;
         if (count == 0) return;
-        const float deviation = std::sqrt(pixel.variance()),
+        const float deviation = std::sqrt(variance_of(pixel)),
                     bright = exposure * luminance(pixel.light) / float(count);
         // A coverage is displayed as it is.
         const float displayed =
@@ -420,7 +427,7 @@ void RadianceMean::write_noisy_light() {
             if (!noisy || noisy->frames[place] == 0) return;
             const NoisyPixel pixel = noisy_pixel_at(*noisy, place);
             to[i].head<3>() = pixel.light / float(pixel.frames);
-            to[i].w() = pixel.variance();
+            to[i].w() = variance_of(pixel);
         });
     });
 }
