@@ -307,10 +307,10 @@ class MeshBuilder {
             return;
         }
         if (std::ranges::all_of(blocks_, has_normals)) return;
-        GltfFlatFaces flat = split_flat_faces(blocks_, faces_, edges_, name_);
+        const GltfFlatFaces flat = split_flat_faces(blocks_, faces_, edges_, name_);
         vertex_count_ = blocks_.back().first + blocks_.back().row_count;
-        flat_F_ = std::move(flat.F);
-        out_.source_vertex = std::move(flat.source_vertex);
+        flat_F_ = flat.F;
+        out_.source_vertex = flat.source_vertex;
         for (VertexBlock& block : blocks_) {
             if (has_normals(block)) continue;
             const Eigen::Map<const Array3i::Dense> F(block.triangles.data(),
