@@ -1,9 +1,11 @@
 // face_id names an element of the user's own arrays, however the object is drawn; picking names the same.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "easypbr/dataset/ground_truth.h"
+#include "easypbr/scene/element_colors.h"
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
@@ -229,6 +231,40 @@ TEST(ElementIds, PickingNamesTheSame) {
             ASSERT_EQ(pick->part, !pick->is_face ? "" : element < first_of_two ? "one" : "two");
         }
     }
+}
+
+// Of vertices: most corners of a face decide, else the first one, wherever on the face the pixel is; the
+// picture's colours say the same.
+TEST(ElementIds, SemanticIdsOfVerticesAreThoseOfThePicture) {
+    Scene scene;
+    Mesh square = facing_square(1);
+    square.edit([](MeshData& data) {
+        data.F = Array3i(Array3i::Dense{{1, 2, 0}, {2, 3, 0}});
+        data.L = Array1i(Array1i::Dense{{4, 7, 9, 9}});
+        data.label_map = std::make_shared<const LabelMap>(
+            "three", std::vector<LabelClass>{
+                         {4, "four", {40, 0, 0}}, {7, "seven", {0, 70, 0}}, {9, "nine", {0, 0, 90}}});
+    });
+    scene.show(square, "square");
+    const MeshData& mesh = *square.snapshot();
+    const std::vector<Rgba8> colors =
+        element_colors(mesh, plan_colors(mesh, {}, DrawMode::mesh, mesh.T_parent_mesh, Vec3d::UnitY()))
+            .colors;
+    app::Session session = plain_session(scene, 40);
+    look_from(session, Vec3d(0, 0, 5), 35);
+    TruthOptions options;
+    options.size = Vec2i(40, 40);
+    const GroundTruth truth = ground_truth(session, {"semantic_id", "face_id"}, options);
+    std::map<int, int> counts;
+    for (size_t i = 0; i < 1600; ++i) {
+        const int face = truth.layers.at("face_id").integers()[i];
+        if (face < 0) continue;
+        ++counts[face];
+        const int label = truth.layers.at("semantic_id").integers()[i];
+        EXPECT_EQ(label, face == 0 ? 7 : 9);  // corners 7 9 4 and 9 9 4
+        EXPECT_EQ(opaque(mesh.label_map->color_of(label)), colors[size_t(face)]);
+    }
+    EXPECT_EQ(counts.size(), 2u);
 }
 
 }  // namespace
