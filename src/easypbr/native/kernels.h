@@ -354,17 +354,22 @@ using FindMapDirections = void (*)(const float (&rotation)[3][3], const float* u
 /// frames in which a pixel has some. Steps of 1 / 65535 are finer than denoisers tell apart.
 struct NoisyTile {
     static constexpr int side = 16, pixels = side * side;
+    static constexpr int hue_rows = 8;  ///< of a column, which have one sum of the hue's squares
 
-    float light[3][pixels] = {};           ///< sum of the radiance, or of the coverage in each channel
-    float squares[pixels] = {};            ///< sum, of the luminance
-    float alpha[pixels] = {};              ///< sum, by what overlays leave; 0 where coverage is noisy
-    float depth[pixels] = {};              ///< mean of its log2, of orthographic pictures of itself
-    uint32_t frames[pixels] = {};          ///< that have noisy light
-    uint16_t normal[3][pixels] = {};       ///< mean world normal, half of 65535 for 0
-    uint16_t reflectance[3][pixels] = {};  ///< mean, linear, 65535 for 1
-    uint8_t noisy[pixels] = {};            ///< what is: 0 nothing, 1 radiance, 2 coverage
+    /// Of a pixel's sum of the hue's squares, by its place among the pixels.
+    static constexpr int hue_place(int place) { return place / (hue_rows * side) * side + place % side; }
+
+    float light[3][pixels] = {};                ///< sum of the radiance, or of the coverage in each channel
+    float squares[pixels] = {};                 ///< sum, of the luminance
+    float hue_squares[pixels / hue_rows] = {};  ///< sum, of red and of blue
+    float alpha[pixels] = {};                   ///< sum, by what overlays leave; 0 where coverage is noisy
+    float depth[pixels] = {};                   ///< mean of its log2, of orthographic pictures of itself
+    uint32_t frames[pixels] = {};               ///< that have noisy light
+    uint16_t normal[3][pixels] = {};            ///< mean world normal, half of 65535 for 0
+    uint16_t reflectance[3][pixels] = {};       ///< mean, linear, 65535 for 1
+    uint8_t noisy[pixels] = {};                 ///< what is: 0 nothing, 1 radiance, 2 coverage
 };
-static_assert(sizeof(NoisyTile) == 41 * NoisyTile::pixels, "there is one for each pixel");
+static_assert(2 * sizeof(NoisyTile) == 83 * NoisyTile::pixels, "there is one for each pixel");
 
 /// A frame's pixels of a row of a tile.
 struct NoisyRow {

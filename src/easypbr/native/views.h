@@ -116,6 +116,7 @@ using u_ambient_occlusion = R16;
 using u_surface = Rgba32f;
 using u_light = Rgba32f;
 using u_estimate = Rgba32f;
+using u_estimated_hue = Rgba32f;
 using u_guides = Rgba32f;
 using u_visibility = R16;
 using u_shadow_maps = Layers;

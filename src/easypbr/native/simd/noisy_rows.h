@@ -69,6 +69,8 @@ INLINE bool add_noisy_lanes(const NoisyRow& row, int first, int place, NoisyTile
     const vfloat bright = 0.2126f * light[0] + 0.7152f * light[1] + 0.0722f * light[2];
     for (int c = 0; c < 3; ++c) add_lanes(tile.light[c] + place, taken, light[c]);
     add_lanes(tile.squares + place, taken, bright * bright);
+    add_lanes(tile.hue_squares + NoisyTile::hue_place(place), taken,
+              light[0] * light[0] + light[2] * light[2]);
     add_lanes(tile.alpha + place, taken && !of_coverage, open * sample.w);
 
     // What overlays hide of noisy light is taken back.

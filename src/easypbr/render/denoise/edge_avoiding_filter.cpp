@@ -1,9 +1,11 @@
 #include "easypbr/render/denoise/edge_avoiding_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "easypbr/core/luminance.h"
 
@@ -11,7 +13,7 @@ namespace easypbr::render {
 namespace {
 
 /// Rows whose estimates are held at once.
-constexpr int band_rows = 128;
+constexpr int band_rows = 64;
 
 /// So that what a surface's colour hides is not divided by nothing.
 constexpr float least_reflectance = 0.001f;
@@ -32,6 +34,40 @@ void change_colors(const Target& light, const NoisyLight& noisy, bool out) {
     });
 }
 
+/// Of each part of a tile that has one sum of the hue's squares: the variance of the light's red and blue in
+/// parts of that of its luminance, over the reflectance each: 1 of noise without a hue.
+using HueNoise = std::array<float, native::NoisyTile::pixels / native::NoisyTile::hue_rows>;
+
+HueNoise hue_noise(const native::NoisyTile& tile) {
+    // Less than what sums of floats are rounded by is no noise, by the square of the mean. The filter takes
+    // noise from around: what hue that has is not known here, and a bounce off a wall may have much.
+    constexpr float rounding = 1e-5f, unknown = 8, least = 0.25f, most = 1e4f;
+    HueNoise of_hue{}, of_luminance{}, bright{};
+    std::ranges::copy(tile.hue_squares, of_hue.begin());
+    for (int place = 0; place < native::NoisyTile::pixels; ++place) {
+        const NoisyPixel pixel = noisy_pixel_at(tile, size_t(place));
+        if (pixel.frames == 0) continue;
+        const Vec3 color =
+            noisy_surface_at(tile, size_t(place)).mean_reflectance().cwiseMax(least_reflectance);
+        const auto part = size_t(native::NoisyTile::hue_place(place));
+        const auto of_hue_in = [](const Vec3& c) { return c.x() * c.x() + c.z() * c.z(); };
+        // What noise without a hue would have, of light that the surface colours.
+        const float colored = of_hue_in(color) / std::pow(luminance(color), 2.0f),
+                    count = float(pixel.frames);
+        // Of one frame the squares are all that is known.
+        const float known = pixel.frames > 1 ? 1 / count : 0;
+        const float of_mean = std::pow(luminance(pixel.light), 2.0f);
+        of_hue[part] -= known * of_hue_in(pixel.light);
+        of_luminance[part] += colored * (pixel.squares - known * of_mean);
+        bright[part] += colored * of_mean / count;
+    }
+    for (size_t part = 0; part < of_hue.size(); ++part)
+        of_hue[part] = of_luminance[part] <= rounding * bright[part]
+                           ? unknown
+                           : std::clamp(of_hue[part] / of_luminance[part], least, most);
+    return of_hue;
+}
+
 /// Numbers from 0 to 1 in eight bits each, as unpackUnorm4x8() of GLSL reads them from a float's bits.
 float packed(const Vec3& values) {
     uint32_t bits = 0;
@@ -44,9 +80,20 @@ float packed(const Vec3& values) {
 void EdgeAvoidingFilter::write_guides(const NoisyLight& noisy) {
     guides_.write(guides_.whole());
     const auto to = guides_.pixels<Vec4>();
+    const TileGrid& grid = noisy.pixels.grid();
+    std::vector<HueNoise> hues(grid.count());
+    parallel_for(hues.size(), 64, [&](size_t tile) {
+        if (const native::NoisyTile* of = noisy.pixels.of(tile); of && !noisy.is_white)
+            hues[tile] = hue_noise(*of);
+        else
+            hues[tile].fill(1);
+    });
+    const auto width = size_t(grid.size().x());
     noisy.each([&](size_t i, const SurfaceMean& surface, Noisy /*of*/) {
+        const int x = int(i % width), y = int(i / width);
+        const int part = native::NoisyTile::hue_place(int(TileGrid::place_of(x, y)));
         to[i] = Vec4(packed(SurfaceMean::values(surface.normal)), packed(noisy.reflectance(surface)),
-                     surface.depth, float(surface.frames));
+                     surface.depth, surface.frames > 0 ? hues[grid.tile_at(x, y)][size_t(part)] : 0.0f);
     });
 }
 
@@ -54,7 +101,7 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
     const Target *from = &noisy.light, *to = &noisy.scratch;
     const PixelRect whole = from->whole();
     change_colors(*from, noisy, true);
-    for (Target* own : {&guides_, &estimate_})
+    for (Target* own : {&guides_, &estimate_, &estimated_hue_})
         if (own->size() != from->size()) *own = Target(gl::Format::rgba32f, from->size());
     write_guides(noisy);
     const auto inputs = [&] {
@@ -70,14 +117,18 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
                   last = std::min(end + first_reach, whole.height);
         const PixelRect estimated{0, first, whole.width, last - first};
         estimate_.write(estimated);
-        estimating_.shade(inputs(), {.target = &estimate_, .area = estimated}, transfers);
+        estimated_hue_.write(estimated);
+        estimating_.shade(inputs(), {.target = &estimate_, .area = estimated, .further = {&estimated_hue_}},
+                          transfers);
         ShaderInputs values = inputs();
         values.define("ESTIMATED");
         values.set("u_estimate", estimate_);
+        values.set("u_estimated_hue", estimated_hue_);
         values.set("u_step", 1);
         smooth_.shade(values, {.target = to, .area = {0, y, whole.width, end - y}}, transfers);
     }
     estimate_.release();
+    estimated_hue_.release();
     for (int level = 1; level < levels; ++level) {
         std::swap(from, to);
         to->write(whole);

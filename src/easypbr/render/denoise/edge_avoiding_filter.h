@@ -21,9 +21,9 @@ class EdgeAvoidingFilter {
     static constexpr int first_reach = 2;
     void write_guides(const NoisyLight& noisy);
 
-    /// For each pixel: packed normal and reflectance, log2 of the depth, the number of frames.
+    /// For each pixel: packed normal and reflectance, log2 of the depth, the hue's noise.
     Target guides_;
-    Target estimate_;  ///< of denoise_estimate.frag, of a band of rows
+    Target estimate_, estimated_hue_;  ///< of denoise_estimate.frag, of a band of rows
     ScreenShader estimating_{"denoise_estimate.frag", native::Shader::denoise_estimate};
     ScreenShader smooth_{"denoise_smooth.frag", native::Shader::denoise_smooth};
 };
