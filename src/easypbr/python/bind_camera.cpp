@@ -5,6 +5,7 @@
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/camera.h"
 
@@ -94,6 +95,7 @@ void bind_camera(nb::module_& module) {
     camera.def(nb::init<>());
     bind_camera_makers(camera);
     bind_copies(camera, [](const Camera& c) { return c; });
+    bind_pickle(camera);
     camera
         .def_prop_rw(
             "T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.T_world_cam.matrix()); }, set_pose,

@@ -8,6 +8,7 @@
 #include "easypbr/geometry/camera_shapes.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/camera_path.h"
 
@@ -143,6 +144,7 @@ void bind_camera_path(nb::module_& module) {
     nb::class_<CameraPath> path(module, "CameraPath", "Camera motion through key poses.");
     bind_camera_path_makers(path);
     bind_times(path);
+    bind_pickle(path);
     path.def(
             "pose", [](const CameraPath& p, double time) { return matrix_to_numpy(p.pose(time).matrix()); },
             nb::arg("time_s"), nb::sig("def pose(self, time_s: float) -> numpy.ndarray"),

@@ -3,6 +3,7 @@
 
 #include "easypbr/core/file.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/environment.h"
 
@@ -24,10 +25,12 @@ void construct_environment(Environment* self, const PathOrArray& source) {
 }  // namespace
 
 void bind_environment(nb::module_& module) {
-    nb::class_<Environment>(module, "Environment",
-                            "Equirectangular environment map for image-based lighting (HDR, EXR, PNG, JPEG, "
-                            "or an array; the first row is straight up).")
-        .def("__init__", construct_environment, nb::arg("source").none() = nb::none())
+    nb::class_<Environment> environment(
+        module, "Environment",
+        "Equirectangular environment map for image-based lighting (HDR, EXR, PNG, JPEG, or an array; the "
+        "first row is straight up).");
+    bind_pickle(environment);
+    environment.def("__init__", construct_environment, nb::arg("source").none() = nb::none())
         .def_prop_ro("name", [](const Environment& e) { return e.empty() ? std::string() : e.name(); })
         .def_prop_ro("empty", &Environment::empty)
         .def(

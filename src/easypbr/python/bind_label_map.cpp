@@ -218,6 +218,13 @@ void bind_label_map(nb::module_& module) {
             "__contains__",
             [](const LabelMapHandle& m, int32_t label) { return m.map->find(label) != nullptr; },
             nb::arg("label"))
+        .def("__reduce__",
+             [](const nb::object& self) {
+                 nb::list arguments;
+                 for (const char* name : {"names", "colors", "labels", "unlabelled", "unknown", "name"})
+                     arguments.append(self.attr(name));
+                 return nb::make_tuple(self.type(), nb::tuple(arguments));
+             })
         .def("__repr__", map_text);
     module.def(
         "colormap", colormap_to_numpy, nb::arg("name"),

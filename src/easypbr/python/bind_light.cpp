@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/light_table.h"
@@ -92,6 +93,7 @@ void bind_light(nb::module_& module) {
               nb::sig("def __init__(self, type: str = 'point', **values: object) -> None"));
     for (const LightField& field : light_fields()) light_property(light, field);
     bind_copies(light, [](const Light& l) { return l; });
+    bind_pickle(light);
 }
 
 }  // namespace easypbr::python

@@ -8,6 +8,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/fields.h"
@@ -146,6 +147,7 @@ void bind_style(nb::module_& module) {
               nb::sig("def __init__(self, **values: object) -> None"));
     style.def("__repr__", style_text);
     bind_copies(style, [](const StyleHandle& s) { return StyleHandle{{}, s.get()}; });
+    bind_pickle(style);
     const std::string prefix = "style.";
     for (const Field& field : fields()) {
         if (!field.name.starts_with(prefix)) continue;
@@ -174,6 +176,7 @@ void bind_material(nb::module_& module) {
     material.def("__init__", construct_material<MaterialHandle>,
                  nb::sig("def __init__(self, **values: object) -> None"));
     bind_copies(material, [](const MaterialHandle& m) { return MaterialHandle{{}, 0, m.get()}; });
+    bind_pickle(material);
     material.def_prop_rw(
         "name", [](const MaterialHandle& m) { return m.get().name; },
         [](MaterialHandle& m, const std::string& name) {

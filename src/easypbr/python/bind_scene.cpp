@@ -7,6 +7,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/viewer/viewer.h"
@@ -16,6 +17,7 @@ namespace easypbr::python {
 void bind_scene(nb::module_& module) {
     nb::class_<Scene>(module, "SceneHandle", "Named meshes, lights and an environment, shared by handle.")
         .def(nb::init<>())
+        .def("__reduce__", [](const Scene&) { refuse_pickle("Scene"); })
         .def(
             "show",
             [](Scene& s, const Mesh& mesh, const std::string& name) {

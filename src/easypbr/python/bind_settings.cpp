@@ -6,6 +6,7 @@
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/colormap.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/synonyms.h"
@@ -88,6 +89,7 @@ void bind_automatic(nb::module_& module) {
             nb::arg("other").none())
         .def("__hash__", [](const Automatic&) { return 1; });
     bind_copies(automatic, [](const Automatic& a) { return a; });
+    bind_pickle(automatic);
     nb::class_<Follow> follow(module, "Follow", "Value of a setting: inferred again for every image.");
     follow.def("__repr__", [](const Follow&) { return "follow"; })
         .def(
@@ -95,6 +97,7 @@ void bind_automatic(nb::module_& module) {
             nb::arg("other").none())
         .def("__hash__", [](const Follow&) { return 2; });
     bind_copies(follow, [](const Follow& f) { return f; });
+    bind_pickle(follow);
     module.attr("auto") = Automatic{};
     module.attr("follow") = Follow{};
 }

@@ -13,6 +13,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
@@ -365,7 +366,7 @@ void bind_viewer_settings(ViewerClass& viewer) {
 
 void bind_viewer(nb::module_& module) {
     ViewerClass viewer(module, "ViewerHandle", "Settings and a renderer for one scene.");
-    viewer
+    viewer.def("__reduce__", [](const SharedViewer&) { refuse_pickle("Viewer"); })
         .def(
             "__init__",
             [](SharedViewer* self, const Scene& scene, const std::string& device) {

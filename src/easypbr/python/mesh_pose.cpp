@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/text.h"
 
 namespace easypbr::python {
@@ -93,6 +94,7 @@ void bind_hierarchy(nb::class_<Mesh>& mesh) {
             "clone", [](const Mesh& m) { return released([&] { return m.clone(); }); },
             "A deep copy, children included.");
     bind_copies(mesh, [](const Mesh& m) { return released([&] { return m.clone(); }); });
+    bind_pickle(mesh);
 }
 
 }  // namespace
