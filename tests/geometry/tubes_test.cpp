@@ -262,6 +262,57 @@ TEST(Tubes, LeaveSharpEdgesOfFacesSharp) {
                 << f << " " << k;
 }
 
+// Two triangles that differ by 30 degrees, which no crease parts: drawn flat, each has its own normal. So it
+// has beside tubes, whose normals stay those of cylinders.
+TEST(Tubes, LeaveFlatFacesFlat) {
+    const auto sine = float(std::sin(pi / 6)), cosine = float(std::cos(pi / 6));
+    MeshData mesh =
+        *polyline({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -cosine, -sine}, {5, 0, 0}, {6, 0, 0}}).snapshot();
+    mesh.E = Array2i::Dense(Eigen::RowVector2i(4, 5));
+    mesh.F = Array3i::Dense(Eigen::Matrix<int, 2, 3, Eigen::RowMajor>{{0, 1, 2}, {1, 0, 3}});
+    mesh.style.flat = true;
+    MeshData with_normals = mesh;
+    with_normals.N = Array3f::Dense(Eigen::RowVector3f(0, 0, 1).replicate(6, 1));
+    const Mesh tube = make_tubes(polyline({{5, 0, 0}, {6, 0, 0}}), {.radius = 0.1});
+    for (const MeshData& flat : {mesh, with_normals}) {
+        const auto whole = make_tubes(Mesh(flat), {.radius = 0.1}).snapshot();
+        EXPECT_NO_THROW(validate(*whole));
+        EXPECT_FALSE(whole->style.flat.value());
+        for (Eigen::Index f = 0; f < whole->F.rows(); ++f) {
+            const Vec3 normal = area_vector(*whole, f).normalized().cast<float>();
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 N = whole->N.row(whole->F(f, k));
+                // Of a tube as without faces; of a flat face its own, but for the rounding of float32.
+                if (f >= 2) {
+                    EXPECT_EQ(N, Vec3(tube.N().row(tube.F()(f - 2, k)))) << f << " " << k;
+                } else {
+                    EXPECT_LT((N - normal).norm(), 1e-6f) << f << " " << k;
+                }
+            }
+        }
+    }
+}
+
+TEST(Tubes, LeaveTangentsOfFacesWhereNothingIsSplit) {
+    MeshData mesh = line_and_triangle();
+    mesh.UV = Array2f::Dense(mesh.V.leftCols(2));
+    mesh.uv_tangents = Array4f::Dense(Eigen::RowVector4f(0.6f, 0.8f, 0, -1).replicate(5, 1));
+    const auto whole = make_tubes(Mesh(mesh), {.radius = 0.1}).snapshot();
+    EXPECT_NO_THROW(validate(*whole));
+    ASSERT_EQ(whole->uv_tangents.rows(), whole->V.rows());
+    EXPECT_EQ(whole->uv_tangents.topRows(3), mesh.uv_tangents.topRows(3));
+}
+
+// Without faces, too, the normals of tubes are what is drawn, in memory as after a file.
+TEST(Tubes, AreNotFlatWhereTheLinesAre) {
+    MeshData line = *polyline({{5, 0, 0}, {6, 0, 0}}).snapshot();
+    line.style.flat = true;
+    line.style.line_width = 3.0f;
+    const auto tube = make_tubes(Mesh(line)).snapshot();
+    EXPECT_FALSE(tube->style.flat.value());
+    EXPECT_EQ(tube->style.line_width.value(), 3.0f);
+}
+
 TEST(Tubes, PointsWithoutEdgeAndFaceAreLeftOutWithAWarning) {
     MeshData mesh = line_and_triangle();
     std::vector<std::string> warnings;

@@ -25,10 +25,11 @@ struct TubeOptions {
 /// than half of an edge: together they make a sphere there. The rings of vertices follow the line without
 /// twist (parallel transport). Creases are kept where a line turns by more than 30 degrees. Colours, labels,
 /// intensities, scalars and texture coordinates of the vertices are carried over. The faces of the mesh come
-/// first, with their parts, materials and values; the tubes are a part of the first material. Points without
-/// an edge or a face are left out with a warning. Vertices at the same place that an edge joins count as one,
-/// and each pair is joined once. Throws ArgumentError when no edge has a length, for radii that are not above
-/// 0, and when both radius and radii are given; Interrupted.
+/// first, with their parts, materials and values; the tubes are a part of the first material. Tubes are drawn
+/// smooth: style.flat is unset in the result, and faces that it would draw flat get the normals of faces in
+/// place of their own. Points without an edge or a face are left out with a warning. Vertices at the same
+/// place that an edge joins count as one, and each pair is joined once. Throws ArgumentError when no edge has
+/// a length, for radii that are not above 0, and when both radius and radii are given; Interrupted.
 Mesh make_tubes(const Mesh& mesh, const TubeOptions& options = {});
 
 }  // namespace easypbr

@@ -12,7 +12,6 @@
 #include "easypbr/geometry/disjoint_sets.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
-#include "easypbr/scene/crease.h"
 #include "easypbr/scene/merge.h"
 
 namespace easypbr {
@@ -253,6 +252,7 @@ class TubeSurface {
         // Vertices of one source would count as one for normals.
         mesh.source_vertex = {};
         mesh.style.mode = {};
+        mesh.style.flat = {};
         return mesh;
     }
 
@@ -442,12 +442,13 @@ MeshData joined_with_faces(const MeshData& mesh, MeshData tubes) {
     selection.edges.clear();
     geometry::drop_unreferenced(selection, mesh);
     MeshData faces = geometry::chosen(mesh, selection);
-    // Tubes have normals: faces without any get those that they are drawn with.
-    if (faces.N.empty()) split_creases(faces, automatic_crease_deg);
+    // The whole is not drawn flat: faces that were get normals that shade them so. See add_drawn_normals().
+    if (faces.style.flat.value_or(false)) faces.N = {};
     tubes.parts = {{"tubes", 0, int(tubes.F.rows()), 0}};
     MeshData whole = merged(std::array{std::move(faces), tubes});
     whole.children = tubes.children;
     whole.style.mode = {};
+    whole.style.flat = {};
     return whole;
 }
 
