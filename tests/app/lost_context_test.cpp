@@ -74,8 +74,7 @@ TEST_F(LostContext, IsReplacedAndThePictureIsTheSame) {
     EXPECT_EQ(session_.device_number(), number + 1);
     EXPECT_EQ(warnings_,
               "the OpenGL context was lost: the GPU was reset because of what was drawn; everything is drawn "
-              "again in "
-              "another one\n");
+              "again in another one\n");
     EXPECT_GT(asked, 1);
     EXPECT_TRUE(drawn() == before);
     EXPECT_EQ(session_.device_number(), number + 1) << "it is lost once";

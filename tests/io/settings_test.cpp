@@ -140,9 +140,8 @@ TEST(SettingsFile, SaysWhatIsWrong) {
          "setting 'image.size': expected 2 numbers, each a whole number from 1 to 65536 pixels, got "
          "[1,\"x\"]"},
         {"{\"easypbr\": 1, \"settings\": {\"background\": {\"color\": \"whte\"}}}",
-         "setting 'background.color': expected a colour: '#rgb', '#rrggbb', a name of CSS such as white, or "
-         "3 "
-         "numbers from 0 to 1, got 'whte' (did you mean 'white'?)"},
+         "setting 'background.color': expected a colour: '#rgb', '#rrggbb', a name of CSS such as white, "
+         "or 3 numbers from 0 to 1, got 'whte' (did you mean 'white'?)"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"type\": \"spott\"}}}", "did you mean 'spot'"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"colour\": [1, 1, 1]}}}", "colour"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"color\": [1, 1]}}}",

@@ -220,9 +220,8 @@ TEST(Fields, SayWhatTheyExpected) {
               "setting 'camera.near': expected a number of at least 1e-30 world units, or 'auto' or "
               "'follow', got 0");
     EXPECT_EQ(message_of("tonemap.operator", "acess"),
-              "setting 'tonemap.operator': expected one of aces, reinhard, agx, neutral, none, got 'acess' "
-              "(did you mean "
-              "'aces'?)");
+              "setting 'tonemap.operator': expected one of aces, reinhard, agx, neutral, none, "
+              "got 'acess' (did you mean 'aces'?)");
     EXPECT_EQ(message_of("background.color", "whte"),
               "setting 'background.color': expected a colour: '#rgb', '#rrggbb', a name of CSS such as "
               "white, or 3 numbers from 0 to 1, got 'whte' (did you mean 'white'?)");

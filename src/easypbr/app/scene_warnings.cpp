@@ -38,8 +38,7 @@ std::string surfels_text(const SceneSnapshot& scene, const Settings& settings) {
     if (name.empty()) return {};
     return fmt::format(
         "style.mode: '{}' has no normals to draw surfels from and is shown as points; "
-        "Mesh.estimate_surfels() and "
-        "'easypbr convert --to-surfels' make them",
+        "Mesh.estimate_surfels() and 'easypbr convert --to-surfels' make them",
         name);
 }
 

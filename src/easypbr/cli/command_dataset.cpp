@@ -27,9 +27,9 @@ constexpr const char* start =
     "try:\n"
     "    from easypbr.dataset.__main__ import main\n"
     "except ModuleNotFoundError as error:\n"
-    "    sys.exit(f'easypbr: error: dataset: {sys.executable} has no module {error.name}: the generator is a "
-    "part of the "
-    "Python package; pip install easypbr, or set EASYPBR_PYTHON to the Python that has it')\n"
+    "    sys.exit(f'easypbr: error: dataset: {sys.executable} has no module {error.name}: "
+    "the generator is a part of the Python package; "
+    "pip install easypbr, or set EASYPBR_PYTHON to the Python that has it')\n"
     "sys.exit(main())\n";
 
 struct DatasetOptions {

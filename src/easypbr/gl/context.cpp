@@ -60,8 +60,7 @@ void require_libraries() {
     if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
         throw ContextError(
             "no OpenGL context: libEGL.so.1 is not installed. Install 'libegl1 libegl-mesa0 libgl1-mesa-dri' "
-            "(Debian), "
-            "or the driver of your GPU");
+            "(Debian), or the driver of your GPU");
     if (!dlopen("libOpenGL.so.0", RTLD_LAZY | RTLD_GLOBAL) && !dlopen("libGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
         throw ContextError(
             "no OpenGL context: neither libOpenGL.so.0 nor libGL.so.1 is installed. Install 'libopengl0'");

@@ -85,12 +85,11 @@ void bind_camera_path_makers(nb::class_<CameraPath>& path) {
                  "segment_s: float | collections.abc.Iterable[float] = 1.0, fov_y_deg: float | "
                  "collections.abc.Iterable[float] | None = None, mode: str = 'smooth', ease: str = 'none', "
                  "closed: bool = False, axes: str = 'opengl') -> None"),
-             "Path through cameras or 4 x 4 poses T_world_cam with OpenGL or OpenCV axes. segment_s: seconds "
-             "between keys, one number or one per segment. fov_y_deg: of each key; by default that of its "
-             "camera, "
-             "or what lies between those of its neighbours. mode: 'smooth' (continuous velocity and "
-             "acceleration) or 'linear'. ease: 'none', 'in', 'out' or 'in_out'. closed: returns to the first "
-             "key and repeats.")
+             "Path through cameras or 4 x 4 poses T_world_cam with OpenGL or OpenCV axes. segment_s: "
+             "seconds between keys, one number or one per segment. fov_y_deg: of each key; "
+             "by default that of its camera, or what lies between those of its neighbours. "
+             "mode: 'smooth' (continuous velocity and acceleration) or 'linear'. "
+             "ease: 'none', 'in', 'out' or 'in_out'. closed: returns to the first key and repeats.")
         .def_static(
             "orbit", orbit, nb::arg("camera"), nb::arg("center") = nb::make_tuple(0, 0, 0),
             nb::arg("axis").none() = nb::none(), nb::arg("angle_deg") = 360.0, nb::arg("duration_s") = 4.0,
@@ -129,9 +128,8 @@ void bind_times(nb::class_<CameraPath>& path) {
             nb::sig("def keys(self) -> list[numpy.ndarray]"),
             "4 x 4 poses of the keys, OpenGL axes; none for an orbit.")
         .def("frame_times", &CameraPath::frame_times, nb::arg("fps"),
-             "Times of the frames of a video: round(duration * fps) for a closed path, but at least 1, and "
-             "one "
-             "more for an open one.")
+             "Times of the frames of a video: round(duration * fps) for a closed path, but at least 1, "
+             "and one more for an open one.")
         .def("times", &CameraPath::times, nb::arg("count"),
              "That many evenly spaced times; of a closed path without the end.")
         .def("frame_rate", &CameraPath::frame_rate, nb::arg("count"),

@@ -76,9 +76,8 @@ void bind_placing(MeshClass& mesh) {
                 return released([&] { return transformed(m, affine); });
             },
             nb::arg("T"),
-            "A new mesh with vertices, offset included, transformed by T (4 x 4), and normals, winding "
-            "order, "
-            "tangents and children with them. T_parent_mesh is kept.")
+            "A new mesh with vertices, offset included, transformed by T (4 x 4), and normals, "
+            "winding order, tangents and children with them. T_parent_mesh is kept.")
         .def(
             "center", [](const Mesh& m) { return released([&] { return centered(m); }); },
             "A new mesh with the centre of its bounding box at its origin.")
@@ -100,8 +99,7 @@ void bind_placing(MeshClass& mesh) {
         .def("oriented_bounding_box", oriented_box,
              nb::sig("def oriented_bounding_box(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
              "A small oriented bounding box: its 4 x 4 pose (centre and axes; the offset of the mesh "
-             "included) "
-             "and its sizes along the axes, in descending order.");
+             "included) and its sizes along the axes, in descending order.");
 }
 
 void bind_repair(MeshClass& mesh) {
@@ -195,8 +193,7 @@ void bind_cuts(MeshClass& mesh) {
             },
             nb::arg("low"), nb::arg("high"), nb::arg("invert") = false,
             "A new mesh of the vertices between two corners, in the mesh's own frame, and of the faces and "
-            "edges "
-            "whose vertices all stay; with `invert` of those outside. Splats count by their means.")
+            "edges whose vertices all stay; with `invert` of those outside. Splats count by their means.")
         .def(
             "crop_sphere",
             [](const Mesh& m, const ArrayLike& center, double radius, bool invert) {
@@ -217,8 +214,7 @@ void bind_splats(MeshClass& mesh) {
             nb::arg("min_opacity") = none.least_opacity, nb::arg("min_size") = none.least_size,
             nb::arg("max_size") = none.most_size,
             "A new mesh of the splats of at least this opacity, whose standard deviation along the longest "
-            "axis lies "
-            "within the sizes.")
+            "axis lies within the sizes.")
         .def(
             "decimate_splats",
             [](const Mesh& m, int64_t count) { return released([&] { return decimate_splats(m, count); }); },
@@ -234,11 +230,10 @@ void bind_splats(MeshClass& mesh) {
             },
             nb::arg("resolution") = SplatMeshOptions{}.resolution,
             nb::arg("level") = SplatMeshOptions{}.level,
-            "A new triangle mesh of the surface of splats: where their density, the sum of opacity exp(-d^2 "
-            "/ 2) with d "
-            "in standard deviations, is `level`, above 0 and below 1. `resolution`: cells of the grid along "
-            "the "
-            "longest side, 8 to 512. With the splats' colours, and their labels if they have some.");
+            "A new triangle mesh of the surface of splats: where their density, "
+            "the sum of opacity exp(-d^2 / 2) with d in standard deviations, is `level`, "
+            "above 0 and below 1. `resolution`: cells of the grid along the longest side, 8 to 512. "
+            "With the splats' colours, and their labels if they have some.");
 }
 
 /// `radius`: None, a number, or one for each vertex.

@@ -74,9 +74,7 @@ void bind_image(nb::module_& module) {
         [](const fs::path& path) { return to_numpy(released([&] { return io::load_image(path); })); },
         nb::arg("path"), nb::sig("def load_image(path: str | os.PathLike) -> numpy.ndarray"),
         "Reads PNG, JPEG, WebP, HDR or EXR: height x width x channels, row 0 on top; uint8 or uint16 (sRGB), "
-        "or "
-        "float32 "
-        "(linear).");
+        "or float32 (linear).");
     module.def(
         "save_image",
         [](const ArrayLike& array, const fs::path& path) {
@@ -85,8 +83,7 @@ void bind_image(nb::module_& module) {
         },
         nb::arg("image"), nb::arg("path"),
         "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point images are linear and premultiplied "
-        "by "
-        "alpha, others are sRGB with straight alpha; JPEG and HDR hold no alpha but 1.");
+        "by alpha, others are sRGB with straight alpha; JPEG and HDR hold no alpha but 1.");
     module.def("encode_png", png_bytes, nb::arg("image"), nb::arg("deep") = false,
                "The bytes of a PNG file of 8 bits; with `deep`, of 16 bits if the image is uint16.");
     module.def("encode_jpeg", jpeg_bytes, nb::arg("image"), nb::arg("quality") = io::jpeg_quality,

@@ -377,14 +377,13 @@ void bind_mesh(nb::module_& module) {
         .def(
             "__init__", [](Mesh* self, const fs::path& path) { released([&] { new (self) Mesh(path); }); },
             nb::arg("path"),
-            "Reads PLY, OBJ, STL, OFF, glTF, GLB, the formats of point clouds (PCD, XYZ, NPY, LAS, ...), and "
-            "what "
-            "assimp reads, in a process of its own.")
+            "Reads PLY, OBJ, STL, OFF, glTF, GLB, the formats of point clouds (PCD, XYZ, NPY, LAS, ...), "
+            "and what assimp reads, in a process of its own.")
         .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F").none() = nb::none(),
              nb::arg("strict") = false,
-             "n x 3 positions and m x 3 vertex indices, of any numeric type; a cloud without faces, whose "
-             "points "
-             "without a finite position are left out with a warning, or raise ArgumentError if strict.");
+             "n x 3 positions and m x 3 vertex indices, of any numeric type; a cloud without faces, "
+             "whose points without a finite position are left out with a warning, "
+             "or raise ArgumentError if strict.");
     bind_arrays(mesh);
     bind_mesh_fields(mesh);
     bind_look(mesh);

@@ -88,9 +88,8 @@ void bind_neighbors(nb::module_& module) {
             nb::sig(
                 "def estimate_surfels(self, k: int = 16, viewpoint: numpy.typing.ArrayLike | None = None, "
                 "keep_normals: bool = False) -> Mesh"),
-            "The vertices as a new mesh of surfels that cover the surface: N as of estimate_normals(), or "
-            "the mesh's "
-            "own; T, one semi-axis; B, the length of the other.")
+            "The vertices as a new mesh of surfels that cover the surface: N as of estimate_normals(), "
+            "or the mesh's own; T, one semi-axis; B, the length of the other.")
         .def(
             "to_surfels", [](const Mesh& mesh) { return released([&] { return surfels_from_mesh(mesh); }); },
             "One surfel for each vertex, with the mesh's normals, as large as its share of the faces around "

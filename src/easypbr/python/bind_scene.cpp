@@ -58,12 +58,12 @@ void bind_scene(nb::module_& module) {
             });
         },
         nb::arg("path"), nb::arg("memory_gb") = 0.0, nb::arg("strict") = false, nb::arg("variant") = "",
-        "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone. Its arrays "
-        "and images "
-        "may take at most memory_gb; 0: three quarters of what is available. With strict, points of a cloud "
-        "without a finite position raise FormatError; else they are left out with a warning. variant names a "
-        "material variant of a glTF file (LoadedScene.variants); empty: the file's own materials. Raises "
-        "UnknownNameError for one that the file has not.");
+        "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone. "
+        "Its arrays and images may take at most memory_gb; 0: three quarters of what is available. "
+        "With strict, points of a cloud without a finite position raise FormatError; "
+        "else they are left out with a warning. "
+        "variant names a material variant of a glTF file (LoadedScene.variants); "
+        "empty: the file's own materials. Raises UnknownNameError for one that the file has not.");
     module.def(
         "default_scene", [] { return default_scene(); }, "The default scene.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });

@@ -178,12 +178,11 @@ void bind_signs(nb::module_& module) {
                 "bool = False) -> Mesh"),
         "Arrows of a vector field, n x 3 starts and vectors, as one mesh. Lengths are those of the vectors "
         "times `scale`: 1 for true lengths, by default such that the longest arrow is as long as "
-        "neighbouring "
-        "starts are apart, but at least a fiftieth of the diagonal of their box. `radius` is that of all "
-        "shafts, default 1/40 of the longest arrow and at most 1/12 of each. Vectors of length 0 have no "
-        "arrow. `values`, n, are scalars \"value\" that colour the arrows; the vectors' lengths are scalars "
-        "\"length\", which do when asked for. Rows that are not finite are left out with a warning, or raise "
-        "ArgumentError if strict.");
+        "neighbouring starts are apart, but at least a fiftieth of the diagonal of their box. "
+        "`radius` is that of all shafts, default 1/40 of the longest arrow and at most 1/12 of each. "
+        "Vectors of length 0 have no arrow. `values`, n, are scalars \"value\" that colour the arrows; "
+        "the vectors' lengths are scalars \"length\", which do when asked for. "
+        "Rows that are not finite are left out with a warning, or raise ArgumentError if strict.");
     module.def(
         "axes", [](float length, std::optional<float> radius) { return make_axes(length, radius); },
         nb::arg("length") = 1.0f, nb::arg("radius").none() = nb::none(),

@@ -110,14 +110,13 @@ void bind_ray_hits(nb::module_& module) {
 
 void bind_ray_tree(nb::module_& module) {
     bind_ray_hits(module);
-    nb::class_<RayTree>(module, "RayTree",
-                        "Rays against the faces of a mesh, or of what as_mesh() takes; in a list, of "
-                        "several. Poses and children "
-                        "are included: faces count in the order of merge(). Points include the offset. All "
-                        "is computed in double "
-                        "precision, so that coordinates far from zero, as of UTM, need nothing. Rays do not "
-                        "slip through between "
-                        "faces. Where a method takes two arrays, one row of either stands for all.")
+    nb::class_<RayTree>(
+        module, "RayTree",
+        "Rays against the faces of a mesh, or of what as_mesh() takes; "
+        "in a list, of several. Poses and children are included: faces count in the order of merge(). "
+        "Points include the offset. All is computed in double precision, so that coordinates "
+        "far from zero, as of UTM, need nothing. Rays do not slip through between faces. "
+        "Where a method takes two arrays, one row of either stands for all.")
         .def(
             "__init__",
             [](RayTree* self, const nb::object& mesh) {
@@ -142,8 +141,7 @@ void bind_ray_tree(nb::module_& module) {
             nb::sig(
                 "def occluded(self, a: numpy.typing.ArrayLike, b: numpy.typing.ArrayLike) -> numpy.ndarray"),
             "n booleans: whether a face lies between two points. Faces within a millionth of the bounding "
-            "box's "
-            "diagonal from either end do not count: a vertex does not hide itself.")
+            "box's diagonal from either end do not count: a vertex does not hide itself.")
         .def(
             "contains",
             [](const RayTree& tree, const ArrayLike& points) {
@@ -152,8 +150,7 @@ void bind_ray_tree(nb::module_& module) {
             },
             nb::arg("points"), nb::sig("def contains(self, points: numpy.typing.ArrayLike) -> numpy.ndarray"),
             "n booleans: whether the surface winds around a point. It must be closed, by shared vertices or "
-            "equal "
-            "positions, and wound consistently; bodies may overlap.");
+            "equal positions, and wound consistently; bodies may overlap.");
 }
 
 }  // namespace
@@ -186,10 +183,9 @@ void bind_surfaces(nb::module_& module) {
         .def("closest_points", closest_points, nb::arg("queries"),
              nb::sig("def closest_points(self, queries: numpy.typing.ArrayLike) -> tuple[numpy.ndarray, "
                      "numpy.ndarray, numpy.ndarray]"),
-             "For each query the distance to the surface, the nearest face, and the nearest point on it; the "
-             "nearest vertex for a mesh without faces. Queries and points are in the mesh's own frame, its "
-             "offset "
-             "included.")
+             "For each query the distance to the surface, the nearest face, and the nearest point on it; "
+             "the nearest vertex for a mesh without faces. Queries and points are in the mesh's own frame, "
+             "its offset included.")
         .def(
             "visible_from",
             [](const Mesh& mesh, const nb::object& viewpoint, const nb::object& size,
@@ -201,14 +197,13 @@ void bind_surfaces(nb::module_& module) {
             nb::sig("def visible_from(self, viewpoint: Camera | numpy.typing.ArrayLike, size: "
                     "numpy.typing.ArrayLike | None = None, origin: numpy.typing.ArrayLike | None = None, "
                     "near: float | None = None) -> numpy.ndarray"),
-            "A boolean for each vertex: whether no face of the mesh hides it from a point or a Camera; with "
-            "children those of merge(). Faces are needed. With the `size` (width, height) of a picture, "
-            "vertices "
-            "outside of it are not visible. A point includes the offset; a camera is relative to `origin`, "
-            "as "
-            "scene.origin, or else to the mesh's offset. What is before the near plane neither is seen nor "
-            "hides: `near`, as the setting camera.near; by default as a view infers it, whatever near the "
-            "camera has.")
+            "A boolean for each vertex: whether no face of the mesh hides it from a point or a Camera; "
+            "with children those of merge(). Faces are needed. "
+            "With the `size` (width, height) of a picture, vertices outside of it are not visible. "
+            "A point includes the offset; a camera is relative to `origin`, as scene.origin, "
+            "or else to the mesh's offset. "
+            "What is before the near plane neither is seen nor hides: `near`, as the setting camera.near; "
+            "by default as a view infers it, whatever near the camera has.")
         .def("distance_to", distance_to, nb::arg("other"), nb::arg("samples") = 100000, nb::arg("seed") = 0,
              "One-sided distances of this surface to the other: a dict of max (of vertices and samples), "
              "mean and rms (of the samples). Poses and children are included.")

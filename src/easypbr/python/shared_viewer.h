@@ -39,8 +39,7 @@ class Turns {
         if (waits_for(self))
             throw ContextError(
                 "two viewers wait for each other: callbacks of both use the other one, on two threads; "
-                "update "
-                "them on one thread");
+                "update them on one thread");
         const uint64_t turn = next_++;
         waiting()[self] = this;
         try {
@@ -151,8 +150,7 @@ class SharedViewer {
         if (!shared_.get_deleter().process.is_this())
             throw ContextError(
                 "this viewer belongs to the process that this one was forked from: GL contexts do not "
-                "survive a fork; "
-                "start processes with multiprocessing.get_context('spawn')");
+                "survive a fork; start processes with multiprocessing.get_context('spawn')");
     }
 
     struct Shared {

@@ -187,9 +187,8 @@ Colormap parse_colormap(std::string_view text) {
     }
     if (text.starts_with('#') || text.find(',') != text.npos) return Colormap(parse_colors(text));
     throw NameError(
-        fmt::format("there is no colormap '{}'{}: expected {}, one of these with _r behind it (reversed), or "
-                    "colours such as "
-                    "'#000080,#ffffff,#800000'",
+        fmt::format("there is no colormap '{}'{}: expected {}, one of these with _r behind it (reversed), "
+                    "or colours such as '#000080,#ffffff,#800000'",
                     text, did_you_mean(text, names), fmt::join(built_in_names, ", ")));
 }
 

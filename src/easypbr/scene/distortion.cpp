@@ -15,12 +15,11 @@ namespace {
 constexpr double widest_deg = 80;
 
 [[noreturn]] void no_inverse(const Vec2d& slopes) {
-    throw ArgumentError(fmt::format(
-        "camera distortion: nothing is seen at ({:.4g}, {:.4g}) focal lengths off the axis: the polynomial "
-        "folds "
-        "before, or the lens sees farther than {} degrees off its axis; use a smaller picture or other "
-        "coefficients",
-        slopes.x(), slopes.y(), widest_deg));
+    throw ArgumentError(
+        fmt::format("camera distortion: nothing is seen at ({:.4g}, {:.4g}) focal lengths off the axis: "
+                    "the polynomial folds before, or the lens sees farther than {} degrees off its axis; "
+                    "use a smaller picture or other coefficients",
+                    slopes.x(), slopes.y(), widest_deg));
 }
 
 Vec2d brown_conrady(const std::array<double, 8>& k, const Vec2d& p) {
@@ -110,8 +109,7 @@ Distortion Distortion::from_coefficients(DistortionModel model, const std::vecto
     if (std::ranges::any_of(rest, [](double c) { return c != 0; }))
         throw ArgumentError(
             "camera distortion: expected 0 for the coefficients after the eighth: there are no thin prisms "
-            "(s1 "
-            "to s4) and tilted sensors (tx, ty)");
+            "(s1 to s4) and tilted sensors (tx, ty)");
     std::ranges::copy(used, distortion.k.begin());
     return distortion;
 }

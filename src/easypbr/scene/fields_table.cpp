@@ -298,8 +298,7 @@ void add_style(Table& table) {
     };
     add("mode", &Style::mode, "Primitive that objects are drawn as.",
         "voxels for data with a voxel size, splats for 3D Gaussians, a mesh for faces, surfels for normals "
-        "with "
-        "tangents, lines for edges, and points for vertices alone");
+        "with tangents, lines for edges, and points for vertices alone");
     add("visible", &Style::visible, "Visibility of objects.", "yes");
     add("point_size", &Style::point_size, "Diameter of points, in point_size_unit.",
         "1.5 mean spacings of the points, at most 1.5 % of the cloud", "", {positive, unlimited});
@@ -352,9 +351,8 @@ void add_style(Table& table) {
         "Value mapped to the last colour of the colour map; higher values are clamped.",
         "the maximum, or the 99th percentile if outliers would take up most of the range", "", {-1e38, 1e38});
     add("color_scale", &Style::color_scale,
-        "Scale of the values over the colour map; on a logarithmic one values that are not above 0 are "
-        "missing "
-        "values.",
+        "Scale of the values over the colour map; on a logarithmic one values that are not above 0 "
+        "are missing values.",
         "linear");
     add("color_steps", &Style::color_steps,
         "Number of bands of one colour each that the colour map is drawn in; 0 draws it continuously.", "0",

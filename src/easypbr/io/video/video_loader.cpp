@@ -42,8 +42,7 @@ const VideoModule& ffmpeg_module() {
 std::string how_to_get() {
     return fmt::format(
         "FFmpeg's libraries cannot be loaded ({}), and there is no program ffmpeg; install ffmpeg (Debian: "
-        "apt "
-        "install ffmpeg), or for Python: pip install imageio-ffmpeg",
+        "apt install ffmpeg), or for Python: pip install imageio-ffmpeg",
         ffmpeg_module().reason());
 }
 
