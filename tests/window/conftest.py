@@ -1,8 +1,13 @@
 """Windows are driven as a person drives them, on a display of the tests' own."""
 import os
+import pathlib
+import sys
 import tempfile
 
 import pytest
+
+# The executable is found as by the tests of the command line.
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 
 _cache = tempfile.TemporaryDirectory(prefix="easypbr-test-cache-")
 os.environ["EASYPBR_CACHE_DIR"] = _cache.name

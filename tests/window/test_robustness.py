@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import easypbr
+from binary import BINARY
 from display import Display, wait_until
 
 HERE = pathlib.Path(__file__).parent
@@ -169,19 +170,27 @@ def test_an_exception_that_ends_the_loop_flushes_the_recording(window, tmp_path)
     assert frames_of(tmp_path / "out.mp4") == 3
 
 
-def test_watched_files_are_shown_again(window, tmp_path):
+def test_a_watched_file_is_shown_again(display, tmp_path):
+    def write(path, color, ahead_ns=0):
+        box = easypbr.shapes.box()
+        box.C = np.tile(color, (len(box.V), 1))
+        box.save(path)
+        times = (time.time_ns() + ahead_ns,) * 2
+        os.utime(path, ns=times)
+
     path = tmp_path / "thing.ply"
-    easypbr.shapes.box().save(path)
-    window.view.scene.show(easypbr.Mesh(path), "thing")
-    window.view._handle.watch(path, "thing")
-    window.settle()
-    faces = len(window.view.scene.get("thing").F)
-    easypbr.shapes.sphere(1, 16).save(tmp_path / "other.ply")
-    os.utime(tmp_path / "other.ply", ns=(time.time_ns() + 10**9,) * 2)
+    write(path, (1.0, 0.0, 0.0))
+    view = subprocess.Popen([BINARY, "view", path, "--watch", "--size", "800x600"], env=display.environment)
+    wait_until(lambda: any("thing" in title for title in display.windows()))
+    left, top = display.place("thing")
+    middle = lambda: display.screen()[top + 300, left + 400].astype(int)  # noqa: E731
+    wait_until(lambda: middle()[0] > 2 * middle()[2])
+    # A second later, for file systems that keep no parts of one.
+    write(tmp_path / "other.ply", (0.0, 0.0, 1.0), 10**9)
     os.replace(tmp_path / "other.ply", path)
-    wait_until(lambda: window.update() and "Reloaded thing" in window.state["messages"])
-    shown = window.view.scene.get("thing")
-    assert sum(len(m.F) for m in [shown, *shown.children]) > faces
+    wait_until(lambda: middle()[2] > 2 * middle()[0])
+    display.run("wmctrl", "-c", "thing")
+    assert view.wait(30) == 0
 
 
 def test_an_edited_shader_is_shown_at_once(window, tmp_path):

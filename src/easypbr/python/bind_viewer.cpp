@@ -10,7 +10,6 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
-#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/pickle.h"
@@ -263,13 +262,6 @@ void bind_window(ViewerClass& viewer) {
         .def("open",
              [](SharedViewer& self, const fs::path& path) {
                  self.run([&](Viewer& v) { v.live().drawing().files().open(path); });
-             })
-        .def("watch",
-             [](SharedViewer& self, const fs::path& path, const std::string& name) {
-                 self.run([&](Viewer& v) {
-                     const io::LoadOptions options = app::load_options(v.settings());
-                     v.live().drawing().files().watch(path, name, io::load_scene(path, options));
-                 });
              })
         .def("set_path",
              [](SharedViewer& self, const CameraPath& path) {
