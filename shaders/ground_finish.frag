@@ -3,6 +3,7 @@
 #include "common_camera.glsl"
 #include "common_caught.glsl"
 #include "common_surface_kind.glsl"
+#include "ground_fade.glsl"
 
 #feature CATCHER is_catcher
 
@@ -15,7 +16,7 @@ layout(location = 0) out vec4 o_color;  // the catcher's radiance; else a factor
 // What is left of a plane, far from the content.
 vec4 faded(vec2 uv) {
     vec3 p = u_world_from_view * view_position(gl_FragCoord.xy, textureLod(u_depth_target, uv, 0.0).r);
-    return vec4(1.0 - smoothstep(0.4, 1.0, distance(p, u_middle.xyz) / u_middle.w));
+    return vec4(1.0 - ground_fade(distance(p, u_middle.xyz) / u_middle.w));
 }
 
 void main() {

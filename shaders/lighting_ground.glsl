@@ -4,6 +4,7 @@
 #include "common_brdf.glsl"
 #include "common_lanes.glsl"
 #include "common_lights.glsl"
+#include "ground_fade.glsl"
 
 #feature GROUND has_ground
 #feature GROUND_PLANE is_ground_lit  // else it catches shadows
@@ -98,7 +99,7 @@ vec3 with_ground(vec3 sky, vec3 position, vec3 normal, vec3 direction, float alp
     float height = dot(direction, up), above = max(dot(position, up) - u_ground.w, 0.0);
     float steep = max(-height, 0.5 * alpha + 1e-3);
     vec3 place = position - up * above + (direction - up * height) * (above / steep);
-    if (is_ground_lit) below *= 1.0 - smoothstep(0.4, 1.0, distance(place, u_ground_middle.xyz) / u_ground_middle.w);
+    if (is_ground_lit) below *= 1.0 - ground_fade(distance(place, u_ground_middle.xyz) / u_ground_middle.w);
     float shadows = meets ? 1.0 - smoothstep(shadow_fades.x, shadow_fades.y, alpha) : 0.0;
     return meets ? mix(left, ground_radiance(place, direction, shadows), below) : sky;
 }

@@ -2,6 +2,7 @@
 // Gaussians.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <vector>
@@ -39,15 +40,22 @@ inline void put_ray(const Vec3& from, const Vec3& direction, float farthest, RTC
     ray.id = ray.flags = 0;
 }
 
-/// Whether a ray passes a ground that fades at this part of its radius, as in shaders/ground_finish.frag: by
-/// a hash.
+/// The fade of the ground, by the text that the shaders include.
+struct GroundFade {
+    static float smoothstep(float low, float high, float x) {
+        const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
+        return t * t * (3 - 2 * t);
+    }
+#include "ground_fade.glsl"
+};
+
+/// Whether a ray passes a ground that fades at this part of its radius: by a hash.
 inline bool passes_ground(const Vec3& from, const Vec3& direction, float part) {
-    constexpr float fades_from = 0.4f;
-    if (part < fades_from) return false;
+    const float gone = GroundFade().ground_fade(part);
+    if (gone <= 0) return false;
     RTCRay ray;
     put_ray(from, direction, std::numeric_limits<float>::infinity(), ray);
-    const float t = (part - fades_from) / (1 - fades_from);
-    return hash_of(ray, ~0u) < t * t * (3 - 2 * t);
+    return hash_of(ray, ~0u) < gone;
 }
 
 /// What a filter needs to know.
