@@ -22,10 +22,6 @@ Material material_of(const MeshData& mesh, const MeshPart& part) {
 /// one.
 constexpr float unlit_point = 0.22f;
 
-bool has_colors(const DrawItem& item) {
-    return item.with_colors || item.colors.values || item.material.base_color_texture;
-}
-
 /// An object and all that decides how it is drawn.
 struct Source {
     const SceneSnapshot::Object& object;
@@ -102,7 +98,8 @@ void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& lis
             item.kind = source.settings.edl.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
         else if (!lit && source.colors.exact)
             item.kind = SurfaceKind::exact;
-        if (item.kind != SurfaceKind::lit && !has_colors(item) && item.material.has_default_color())
+        const bool has_colors = item.has_own_colors() || item.material.base_color_texture;
+        if (item.kind != SurfaceKind::lit && !has_colors && item.material.has_default_color())
             item.material.base_color = Vec3::Constant(unlit_point);
     }
     list.items[kind].push_back(std::move(item));

@@ -39,6 +39,8 @@ struct DrawItem {
     /// The factor of its pose on lengths: the cube root of that on volumes.
     double scale() const;
     bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
+    /// Colours by the data of vertices or faces. Points may have those of a texture besides; lines have none.
+    bool has_own_colors() const { return with_colors || colors.values; }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
     /// Its shadow is a tint: it weakens light instead of stopping it.
     bool casts_tint() const {

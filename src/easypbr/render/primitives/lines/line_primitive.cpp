@@ -31,15 +31,11 @@ struct Stroke {
     }
 };
 
-bool has_own_colors(const DrawItem& item) {
-    return item.with_colors || item.colors.values;
-}
-
 /// Of lines that are the shape of an item. The default of a material is none.
 std::optional<Vec3> color_of_lines(const DrawItem& item) {
     const Vec3& base = item.material.base_color;
     if (item.style.line_color) return linear_from_srgb(*item.style.line_color);
-    if (has_own_colors(item)) return {};
+    if (item.has_own_colors()) return {};
     return item.material.has_default_color() ? linear_from_srgb(wireframe_color) : base;
 }
 
