@@ -23,6 +23,8 @@ layout(location = 0) out vec4 o_light;  // r: with shadows, g: without
 
 const float inverse_pi = 0.31830988618379067;
 
+// As arriving_on_ground() of lighting_ground.glsl, but the luminance alone, which is all that o_light holds of a light: one number
+// is multiplied and summed for each light and pixel in place of three. There the normal is the ground's, and the colour is mirrored.
 float arriving_at(Light light, vec3 position, vec3 normal) {
     if (has_area_lights && light.position.w > 2.5) return luminance(light.color.rgb) * area_irradiance(light, position, normal);
     vec3 l;

@@ -37,6 +37,8 @@ float part_below(vec3 direction, vec3 normal, float alpha) {
     return clamp(below / (1.0 - abs(faces) * own), 0.0, 1.0);
 }
 
+// Light of the block's on the ground, divided by pi. A catcher in the picture itself takes its luminance alone: arriving_at() of
+// lighting_catcher.frag.
 vec3 arriving_on_ground(Light light, vec3 place) {
     if (has_area_lights && light.position.w > 2.5) return light.color.rgb * area_irradiance(light, place, u_ground.xyz);
     vec3 l;

@@ -27,7 +27,8 @@ SceneSnapshot content_until(const Scene& scene, double end_s, const PutAt& put) 
 
 ResolvedSettings resolve_for(Session& session, const SceneSnapshot& content, const Vec2i& size) {
     session.resolve(size);  // Releases what is latched for less content.
-    // The legend is that of the scene: it names each object once.
+    // Not by Session::resolve_framed(), which takes the legend from what it frames: the content has each
+    // object many times, and the scene's legend, which is drawn, names it once.
     const Insets covered = session.insets().with(session.annotation_strip(size));
     return easypbr::resolve(content, session.settings(), size, {}, covered);
 }
