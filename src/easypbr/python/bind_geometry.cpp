@@ -261,7 +261,8 @@ void bind_lines(MeshClass& mesh) {
         "A new mesh of closed tubes along the edges (E), with what the vertices have. `radius`: a number, "
         "one for each vertex, or by default 1/200 of the diagonal of the box. Lines are mitred at "
         "corners and end in half spheres at branches and sharp turns, and at their ends, which may be "
-        "'flat'. Faces are kept, before the tubes.");
+        "'flat'. Faces are kept, before the tubes; style.flat is not: faces that it draws flat get normals "
+        "that look the same, and the tubes are smooth.");
 }
 
 }  // namespace
