@@ -388,13 +388,17 @@ TEST(Lines, WireframesAreWholeInCreases) {
 TEST(Lines, BehindTheCameraAreCut) {
     Scene scene;
     scene.show(segment(Vec3(0, -0.1f, -3), Vec3(0, -0.1f, 9)), "line");
-    app::Session session = plain_session(scene, 101);
-    look_from(session, Vec3d(0, 0, 4));
-    session.settings().camera.near = 0.01;
-    const Image image = render_linear(session);
-    // It runs from the vanishing point's neighbourhood straight down and out of the picture.
-    EXPECT_GT(image.at<float>(50, 95)[3], 0.5f);
-    EXPECT_EQ(image.at<float>(50, 5)[3], 0.0f);
+    for (const bool native : {true, false})
+        for (const Auto<double>& near : {Auto<double>(0.01), Auto<double>(automatic)}) {
+            app::Session session = plain_session(scene, 101);
+            session.allow_native_shading(native);
+            look_from(session, Vec3d(0, 0, 4));
+            session.settings().camera.near = near;
+            const Image image = render_linear(session);
+            // It runs from the vanishing point's neighbourhood straight down and out of the picture.
+            EXPECT_GT(image.at<float>(50, 95)[3], 0.5f) << native;
+            EXPECT_EQ(image.at<float>(50, 5)[3], 0.0f) << native;
+        }
 }
 
 TEST(Lines, OfAWireframeAreEachDrawnOnce) {

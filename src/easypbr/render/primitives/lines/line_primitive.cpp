@@ -63,11 +63,7 @@ Mat4 clip_from_mesh(const Frame& frame, const DrawItem& item) {
 }
 
 LineView screen_view_of(const Frame& frame, const DrawItem& item, const Vec4& color) {
-    return {.clip_from_mesh = clip_from_mesh(frame, item),
-            .size = frame.size.cast<float>(),
-            .orthographic = frame.orthographic(),
-            .near = float(frame.camera.near),
-            .color = color};
+    return {.clip_from_mesh = clip_from_mesh(frame, item), .size = frame.size.cast<float>(), .color = color};
 }
 
 /// What overlay_lines.frag reads of an item, for a program or for native shaders.
@@ -178,7 +174,6 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
     if (kind != Kind::nearest) nearest_.bind(2);
     program.set("u_nearest_line", 2);
     program.set("u_table", int(table_unit));
-    program.set("u_least_w", frame.orthographic() ? 0.5f : float(frame.camera.near));
     const gl::DrawState nearest{.depth_test = gl::DepthTest::greater_equal, .write_depth = true};
     const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
     for (const DrawItem& item : items) {

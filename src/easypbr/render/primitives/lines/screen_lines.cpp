@@ -22,15 +22,30 @@ struct Part {
     bool is_empty() const { return from > to; }
 };
 
-Part part_of(const Vec4& start, const Vec4& end, const LineView& view) {
+/// No segment is cut nearer than this part of the larger |w| of its ends: their clip coordinates are of
+/// single precision, an error of 1e-7 of it that is to stay small beside w, which they are divided by.
+constexpr float least_part_of_w = 1e-5f;
+/// Pixels from the middle of the picture, beyond which segments are cut: there single precision still holds
+/// hundredths.
+constexpr float farthest_pixel = 1e5f;
+
+Part part_of(const Vec4& start, const Vec4& end, const Vec2& size) {
+    const float least_w = least_part_of_w * std::max(std::abs(start.w()), std::abs(end.w()));
     Part part;
-    if (view.orthographic) {
-        part.cut(start.z(), end.z());
-        part.cut(1 - start.z(), 1 - end.z());
-    } else {
-        part.cut(start.w() - view.near, end.w() - view.near);
+    part.cut(start.w() - least_w, end.w() - least_w);
+    part.cut(start.w() - start.z(), end.w() - end.z());  // the near plane
+    part.cut(start.z(), end.z());                        // the far plane of an orthographic camera
+    for (int k = 0; k < 2; ++k) {
+        const float side = 2 * farthest_pixel / size[k];
+        part.cut(side * start.w() - start[k], side * end.w() - end[k]);
+        part.cut(side * start.w() + start[k], side * end.w() + end[k]);
     }
     return part;
+}
+
+/// The ends themselves at 0 and 1.
+Vec4 point_at(const Vec4& start, const Vec4& end, float place) {
+    return start * (1 - place) + end * place;
 }
 
 /// See LineView::color for `given`.
@@ -50,9 +65,9 @@ Vec2 pixel_of(const Vec4& clip, const Vec2& size) {
 bool project(const gpu::Segment& segment, const LineView& view, native::ScreenLine& line) {
     const Vec4 start = view.clip_from_mesh * Vec4(segment.a[0], segment.a[1], segment.a[2], 1),
                end = view.clip_from_mesh * Vec4(segment.b[0], segment.b[1], segment.b[2], 1);
-    const Part part = part_of(start, end, view);
+    const Part part = part_of(start, end, view.size);
     if (part.is_empty()) return false;
-    const Vec4 a = start + part.from * (end - start), b = start + part.to * (end - start);
+    const Vec4 a = point_at(start, end, part.from), b = point_at(start, end, part.to);
     const Vec2 from = pixel_of(a, view.size), to = pixel_of(b, view.size), way = to - from;
     line.length = way.norm();
     if (!std::isfinite(line.length)) return false;
