@@ -335,6 +335,25 @@ TEST(Resolve, NearPlaneLiesBeforeWhatIsNearHoweverFarTheRestIs) {
     }
 }
 
+// A tenth of the depth of the content; within it 1e-9 of the distance to the target.
+TEST(Resolve, NearPlaneIsWhereTheFieldSaysThatItIs) {
+    Scene scene;
+    scene.show(points({{-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}}), "cube");
+    const auto near_from = [&](double z) {
+        Settings settings;
+        settings.camera.position = Vec3d(0, 0, z);
+        settings.camera.target = Vec3d(0, 0, z - 2);
+        return resolve(scene.snapshot(), settings, size).camera.near;
+    };
+    // In double precision of a few steps.
+    EXPECT_NEAR(near_from(2.5), 0.1 * 2, 1e-14);
+    EXPECT_NEAR(near_from(4.5), 0.1 * 4, 1e-14);
+    EXPECT_NEAR(near_from(0.25), 1e-9 * 2, 1e-22);
+    EXPECT_EQ(field("camera.near").doc,
+              "Distance to the near clipping plane; automatic: 0.1 of the smallest depth of the content, but "
+              "at least 1e-09 of the distance to the target.");
+}
+
 // The Earth below a camera in orbit, and a satellite of 2 m at 10 m: 1e-9 of the 6.8e6 m to the middle.
 TEST(Resolve, NearPlaneLiesBeforeWhatIsNearWithinLargeContent) {
     Scene scene;

@@ -8,6 +8,7 @@
 #include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/near_plane.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr {
@@ -61,8 +62,9 @@ void add_camera(Table& table) {
              "world units", {positive, unlimited}));
     table.push_back(
         make("camera.near", EASYPBR_AT(camera.near),
-             "Distance to the near clipping plane; automatic: a tenth of the smallest depth of "
-             "the content; where that is behind the camera, 0.00001 of the distance to the target.",
+             fmt::format("Distance to the near clipping plane; automatic: {} of the smallest depth of the "
+                         "content, but at least {} of the distance to the target.",
+                         near_part_of_depth, least_near_part),
              "world units", {positive, unlimited}));
     table.push_back(make("camera.azimuth_deg", EASYPBR_AT(camera.azimuth_deg),
                          "Azimuth of an automatic camera: 0 in front of the content, positive to its right; "
