@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
@@ -331,6 +332,16 @@ TEST(Up, OfAFormatWinsOverTheGround) {
     const Mesh mesh = room().turned(Mat3d::Identity());
     EXPECT_EQ(up_of(with_up(mesh, Vec3d::UnitY())), "+y");
     EXPECT_EQ(up_of(with_up(make_sphere(1, 32), -Vec3d::UnitY())), "-y");
+}
+
+TEST(Up, IsInferredInTheOrderThatTheFieldTells) {
+    const std::string& doc = field("camera.up").doc;
+    size_t last = doc.find("utomatic: ");
+    for (const char* source : {"the file's format", "+z of a height field", "the ground", "+y"}) {
+        const size_t place = doc.find(source, last);
+        ASSERT_NE(place, std::string::npos) << source;
+        last = place;
+    }
 }
 
 TEST(Up, OfAFormatTurnsWithTheMesh) {

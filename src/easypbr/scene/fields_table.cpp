@@ -51,8 +51,8 @@ void add_camera(Table& table) {
     table.push_back(with_choices(
         make("camera.up", EASYPBR_AT(camera.up),
              "World axis that points up, for the camera, the environment and the ground; automatic: "
-             "that of the file's format, or of the ground that the content clearly stands on, "
-             "else +y."),
+             "that of the file's format, else +z of a height field z = f(x, y), else that of the ground that "
+             "the content clearly stands on, else +y."),
         {"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
     table.push_back(make("camera.fov_y_deg", EASYPBR_AT(camera.fov_y_deg),
                          "Vertical field of view of a perspective camera.", "degrees", {1, 170}));
