@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "easypbr/core/error.h"
@@ -354,14 +355,24 @@ TEST(Resolve, NearPlaneIsWhereTheFieldSaysThatItIs) {
               "at least 1e-09 of the distance to the target.");
 }
 
-// The Earth below a camera in orbit, and a satellite of 2 m at 10 m: 1e-9 of the 6.8e6 m to the middle.
+// The Earth below a camera in orbit, and a satellite of 2 m at 10 m: 1e-9 of the 6.8e6 m to the middle. Clip
+// coordinates are of single precision, which holds the smallest of all reversed depths, that of the farthest
+// corner, to its 24 bits (1e-6 for three roundings), and its square too.
 TEST(Resolve, NearPlaneLiesBeforeWhatIsNearWithinLargeContent) {
     Scene scene;
     scene.show(points({{-6.4e6f, -13.2e6f, -6.4e6f}, {6.4e6f, -4e5f, 6.4e6f}}), "planet");
     scene.show(points({{-1, -1, -11}, {1, 1, -9}}), "satellite");
     Settings settings;
     settings.camera.pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    EXPECT_LT(resolve(scene.snapshot(), settings, size).camera.near, 0.1);
+    const ResolvedSettings resolved = resolve(scene.snapshot(), settings, size);
+    const double near = resolved.camera.near, farthest = 6.4e6;
+    EXPECT_LT(near, 0.1);
+    EXPECT_GE(near, 0.99e-9 * farthest);
+    const Eigen::Vector4f clip =
+        resolved.camera.projection_matrix(1).cast<float>() * Eigen::Vector4f(0, 0, -float(farthest), 1);
+    const float depth = clip.z() / clip.w();
+    EXPECT_NEAR(double(depth), near / farthest, 1e-6 * near / farthest);
+    EXPECT_GT(depth * depth, std::numeric_limits<float>::min());
 }
 
 TEST(Resolve, VoxelsAreOccludedAsSurfacesAre) {
