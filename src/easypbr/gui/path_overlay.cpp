@@ -16,6 +16,9 @@ constexpr ImU32 curve_color = IM_COL32(255, 140, 40, 255), key_color = IM_COL32(
 constexpr int pieces_of_segment = 32, pieces_of_edge = 8;
 /// Length of a camera's outline for the curve's extent, and how much farther than a surface a line may lie.
 constexpr double outline_part = 0.1, slack = 1.01;
+/// No piece is cut nearer than this part of the depth of its farther end: vertices are of single precision,
+/// which holds pixels up to a million of them from the picture.
+constexpr double least_part_of_depth = 1e-3;
 
 class Overlay {
   public:
@@ -54,10 +57,11 @@ class Overlay {
 
   private:
     double depth_of(const Vec3d& point) const { return (camera_.T_world_cam.inverse() * point).z() * -1; }
-    /// Cuts what lies before the near plane; false when all of it does.
+    /// Cuts what lies before the near plane or too near to be drawn; false when all of it does.
     bool clip(Vec3d& a, Vec3d& b) const {
         if (camera_.projection != Projection::perspective) return true;
-        const double near = std::max(camera_.near, 1e-9), da = depth_of(a), db = depth_of(b);
+        const double da = depth_of(a), db = depth_of(b);
+        const double near = std::max({camera_.near, 1e-9, least_part_of_depth * std::max(da, db)});
         if (da < near && db < near) return false;
         if (da < near) a += (b - a) * (near - da) / (db - da);
         if (db < near) b += (a - b) * (near - db) / (da - db);
