@@ -3,6 +3,7 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
+#include "render/single_splats.h"
 
 namespace easypbr::app::lens_depth_test {
 namespace {
@@ -64,6 +65,64 @@ TEST(LensDepth, OfTilesIsThatOfTheWhole) {
             // The same face and ray, in double precision.
             ASSERT_EQ(tiled.at<float>(x, y)[0], whole.at<float>(x, y)[0]) << x << ", " << y;
         }
+}
+
+enum class Kind { points, surfels, splats };
+
+/// Four primitives of a slanted plane, one in each quarter of the picture of floor_session().
+Mesh four_of(Kind kind) {
+    std::vector<render::single_splats::Splat> splats(4);
+    Array3f::Dense N(4, 3), T(4, 3);
+    for (int i = 0; i < 4; ++i) {
+        const double x = i % 2 ? 1 : -1, y = i / 2 ? 0.75 : -0.75;
+        splats[size_t(i)].mean = Vec3d(x, y, 4 + 0.5 * x);
+        splats[size_t(i)].scales = Vec3d(0.3, 0.3, 0.1);
+        splats[size_t(i)].opacity = 0.99;
+        N.row(i) = Vec3(0.5f, 0, -1).normalized();
+        T.row(i) << 0, 0.5f, 0;
+    }
+    MeshData mesh = render::single_splats::mesh_of(splats);
+    if (kind == Kind::splats) return Mesh(mesh);
+    MeshData plain;
+    plain.V = mesh.V;
+    plain.N = Array3f(N);
+    plain.T = Array3f(T);
+    plain.style.mode = kind == Kind::surfels ? DrawMode::surfels : DrawMode::points;
+    return Mesh(plain);
+}
+
+TEST(LensDepth, OfPrimitivesInTilesIsThatOfTheWhole) {
+    const Vec2i large(640, 480);
+    for (const Kind kind : {Kind::points, Kind::surfels, Kind::splats}) {
+        Session session = floor_session();
+        session.scene().clear();
+        session.scene().show(four_of(kind), "four");
+        // Their reaches leave no room for small tiles.
+        session.settings().ssao.enabled = false;
+        session.settings().edl.enabled = false;
+        session.settings().style.point_size = 40;
+        const Image whole = session.render_layers({"depth"}, large).at("depth");
+        session.limit_tiles({384, int64_t(1) << 25});
+        const Image tiled = session.render_layers({"depth"}, large).at("depth");
+        const std::span<const float> expected = whole.pixels<float>(), found = tiled.pixels<float>();
+        ASSERT_EQ(found.size(), expected.size());
+        int seen = 0, on_one_alone = 0;
+        for (size_t i = 0; i < found.size(); ++i) {
+            const bool is_seen = expected[i] > 0;
+            seen += is_seen;
+            on_one_alone += is_seen != (found[i] > 0);
+            // Points have the depth that is drawn: the near plane over a float32, 6e-8 each.
+            if (is_seen && found[i] > 0) {
+                ASSERT_NEAR(found[i], expected[i], 5e-7 * expected[i]) << int(kind) << ' ' << i;
+            }
+        }
+        EXPECT_GT(seen, 4 * 1000) << int(kind);
+        // A tile's projection is rounded otherwise: a few of the pixels on rims, which are some 1000.
+        EXPECT_LE(on_one_alone, 10) << int(kind);
+        if (kind != Kind::surfels) continue;
+        // The middle of the first of them, up to the slope of its plane within some pixels.
+        EXPECT_NEAR(session.focus_at(150, 113, large), 3.5, 0.02);
+    }
 }
 
 TEST(LensDepth, IsFocusedAt) {

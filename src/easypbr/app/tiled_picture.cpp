@@ -40,16 +40,18 @@ void place(const std::vector<T>& from, const Tile& tile, Vec2i size, std::vector
 }
 
 void place(render::SurfaceFrame from, const Tile& tile, Vec2i size, render::SurfaceFrame& picture) {
-    place(from.depth, tile, size, picture.depth);
-    place(from.object, tile, size, picture.object);
-    place(from.element, tile, size, picture.element);
-    place(from.is_face, tile, size, picture.is_face);
-    place(from.part, tile, size, picture.part);
-    picture.size = size;
-    picture.camera = from.camera;
-    picture.scene = std::move(from.scene);
-    picture.only_faces = std::move(from.only_faces);
-    picture.voxel_sizes = std::move(from.voxel_sizes);
+    const auto place_pixels = [&](auto& of_tile, auto& of_picture) {
+        place(of_tile, tile, size, of_picture);
+        of_tile = std::move(of_picture);
+    };
+    place_pixels(from.depth, picture.depth);
+    place_pixels(from.object, picture.object);
+    place_pixels(from.element, picture.element);
+    place_pixels(from.is_face, picture.is_face);
+    place_pixels(from.part, picture.part);
+    from.size = size;
+    // All that is not of pixels is the same in every tile.
+    picture = std::move(from);
 }
 
 }  // namespace
