@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "easypbr/core/ascii.h"
@@ -43,15 +45,42 @@ std::byte* allocate_pages(size_t size, std::string_view path) {
 }
 
 /// Beneath the folder of a FolderScope where there is one.
-Descriptor open_input(const fs::path& path) {
-    if (OpenedFiles* const files = OpenedFilesScope::current()) files->add(path);
-    const int flags = O_RDONLY | O_NONBLOCK;
+Descriptor open_in_scope(const fs::path& path, int flags) {
     const Folder* const folder = FolderScope::current();
     if (!folder) return Descriptor(open_file(path.c_str(), flags));
-    const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(folder->path());
-    Descriptor file = folder->open(relative, flags);
-    if (file.get() < 0 && errno == EXDEV)
+    return folder->open(fs::absolute(path).lexically_normal().lexically_relative(folder->path()), flags);
+}
+
+fs::file_time_type change_time(const struct stat& info) {
+    const timespec& time = info.st_mtim;
+    return fs::file_time_type::clock::from_sys(std::chrono::sys_time<std::chrono::nanoseconds>(
+        std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec)));
+}
+
+/// When a file was changed last that could not be opened, for `error`; the least time where it is missing.
+/// Nothing for links that a folder cannot follow: what they lead to may be there all the time.
+std::optional<fs::file_time_type> unopened_time(const fs::path& path, int error) {
+    if (FolderScope::current() && (error == ELOOP || error == ENOTDIR)) return {};
+    const Descriptor place = open_in_scope(path, O_PATH);
+    struct stat info {};
+    if (place.get() < 0 || ::fstat(place.get(), &info) != 0) return fs::file_time_type::min();
+    return change_time(info);
+}
+
+/// Nothing outside of the folder of a FolderScope is even looked at.
+Descriptor open_input(const fs::path& path) {
+    Descriptor file = open_in_scope(path, O_RDONLY | O_NONBLOCK);
+    const int error = errno;
+    const Folder* const folder = FolderScope::current();
+    if (folder && file.get() < 0 && error == EXDEV)
         fail_read(path.string(), fmt::format("it lies outside of the folder {}", folder->path().string()));
+    OpenedFiles* const files = OpenedFilesScope::current();
+    if (!files) return file;
+    struct stat info {};
+    const bool is_open = file.get() >= 0 && ::fstat(file.get(), &info) == 0;
+    const std::optional<fs::file_time_type> time = is_open ? change_time(info) : unopened_time(path, error);
+    if (time) files->add(path, *time);
+    errno = error;
     return file;
 }
 

@@ -11,12 +11,6 @@ thread_local OpenedFiles* innermost_files = nullptr;
 
 OpenedFiles::OpenedFiles() : outer_(OpenedFilesScope::current()) {}
 
-void OpenedFiles::add(const fs::path& path) {
-    std::error_code missing;
-    const auto time = fs::last_write_time(path, missing);
-    add(path, missing ? fs::file_time_type::min() : time);
-}
-
 void OpenedFiles::add(const fs::path& path, fs::file_time_type time) {
     if (outer_) outer_->add(path, time);
     const std::lock_guard lock(mutex_);

@@ -8,11 +8,12 @@
 
 namespace easypbr {
 
-/// Files by the paths that were given to InputFile, those that could not be opened among them.
+/// Files by the paths that were given to InputFile, those that could not be opened among them, but none that
+/// the folder of a FolderScope refuses.
 class OpenedFiles {
   public:
-    /// When each was changed last, as seen before it was first opened: one that is replaced while it is read
-    /// has a later time afterwards. Of a file that is missing the least time.
+    /// When each was changed last, as seen when it was first opened: one that is replaced while it is read
+    /// has another time afterwards. Of a file that is missing the least time.
     using Times = std::map<fs::path, fs::file_time_type>;
 
     /// What is noted here is noted in those of the scope around it as well.
@@ -20,14 +21,12 @@ class OpenedFiles {
     OpenedFiles(const OpenedFiles&) = delete;
     OpenedFiles& operator=(const OpenedFiles&) = delete;
 
-    /// Before the file is opened. Thread-safe.
-    void add(const fs::path& path);
+    /// Before the file is read. Thread-safe.
+    void add(const fs::path& path, fs::file_time_type time);
     /// When all has been read.
     const Times& times() const { return times_; }
 
   private:
-    void add(const fs::path& path, fs::file_time_type time);
-
     OpenedFiles* outer_;
     std::mutex mutex_;
     Times times_;
