@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
+#include "easypbr/core/error.h"
+#include "easypbr/io/mesh/gltf/gltf_vertices.h"
 #include "easypbr/scene/mesh.h"
 #include "io/gltf_decoded.h"
 
@@ -91,6 +95,24 @@ TEST(GltfNormals, FlatFacesAreFlatInEveryPose) {
     EXPECT_TRUE(corner_normals(mesh, 0).isApprox(all_of(0, -half, half), 1e-6f)) << mesh.N;
     EXPECT_TRUE(corner_normals(mesh, 1).isApprox(all_of(1, 0, 0), 1e-6f)) << mesh.N;
     EXPECT_EQ(corner_normals(mesh, 2), (Array3f::Dense{{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
+}
+
+// Blocks say how many vertices they have; none are made of more than 32-bit indices count.
+TEST(GltfNormals, TooManyVerticesAreABadFile) {
+    std::vector<VertexBlock> blocks(2);
+    VertexBlock &smooth = blocks[0], &flat = blocks[1];
+    smooth.N.resize(1, 3);
+    smooth.row_count = std::numeric_limits<int32_t>::max() - 4;
+    flat.first = smooth.row_count;
+    flat.V = Array3f::Dense::Zero(4, 3);
+    flat.row_count = 4;
+    flat.triangles = {0, 1, 2, 1, 2, 3};
+    const int32_t first = int32_t(flat.first);
+    std::vector<int32_t> faces{first, first + 1, first + 2, first + 1, first + 2, first + 3}, edges;
+    // The faces' six corners are two vertices too many.
+    EXPECT_THROW(split_flat_faces(blocks, faces, edges, "mesh"), FormatError);
+    EXPECT_EQ(flat.V.rows(), 4);
+    EXPECT_EQ(flat.first, smooth.row_count);
 }
 
 }  // namespace

@@ -89,15 +89,30 @@ void choose_rows(VertexBlock& block, const std::vector<int32_t>& rows, const std
     block.points.clear();  // beside faces no points are drawn
 }
 
-/// The rows of a block after the split: those that lines need, then one for each corner.
-std::vector<int32_t> split_rows(const VertexBlock& block, bool is_flat, bool has_lines) {
-    std::vector<int32_t> rows;
-    if (!is_flat || has_lines) {
-        rows.resize(size_t(block.row_count));
-        std::iota(rows.begin(), rows.end(), 0);
-    }
-    if (is_flat) rows.insert(rows.end(), block.triangles.begin(), block.triangles.end());
+bool has_flat_faces(const VertexBlock& block) {
+    return block.N.rows() == 0 && !block.triangles.empty();
+}
+
+/// How many rows of a block remain before those of the corners: all, or none where only faces have them.
+size_t kept_rows(const VertexBlock& block, bool has_lines) {
+    return !has_flat_faces(block) || has_lines ? size_t(block.row_count) : 0;
+}
+
+/// The rows of a block after the split: those that remain, then one for each corner.
+std::vector<int32_t> split_rows(const VertexBlock& block, bool has_lines) {
+    std::vector<int32_t> rows(kept_rows(block, has_lines));
+    std::iota(rows.begin(), rows.end(), 0);
+    if (has_flat_faces(block)) rows.insert(rows.end(), block.triangles.begin(), block.triangles.end());
     return rows;
+}
+
+/// The number of all rows after the split.
+size_t count_split_rows(const std::vector<VertexBlock>& blocks, const std::vector<bool>& has_lines) {
+    size_t count = 0;
+    for (size_t b = 0; b < blocks.size(); ++b)
+        count +=
+            kept_rows(blocks[b], has_lines[b]) + (has_flat_faces(blocks[b]) ? blocks[b].triangles.size() : 0);
+    return count;
 }
 
 }  // namespace
@@ -118,17 +133,19 @@ GltfFlatFaces split_flat_faces(std::vector<VertexBlock>& blocks, std::vector<int
     };
     std::vector<bool> has_lines(blocks.size(), false);
     for (const int32_t vertex : edges) has_lines[block_of(vertex)] = true;
+    const size_t count = count_split_rows(blocks, has_lines);
+    if (count > size_t(std::numeric_limits<int32_t>::max()))
+        throw FormatError(fmt::format("{} has more than 2^31 vertices", name));
+    charge_memory(count * sizeof(int32_t), name);
     std::vector<std::optional<int32_t>> next_corner(blocks.size());
     std::vector<int32_t> sources;
+    sources.reserve(count);
     for (size_t b = 0; b < blocks.size(); ++b) {
         VertexBlock& block = blocks[b];
-        const bool is_flat = block.N.rows() == 0 && !block.triangles.empty();
-        const std::vector<int32_t> rows = split_rows(block, is_flat, has_lines[b]);
+        const std::vector<int32_t> rows = split_rows(block, has_lines[b]);
         block.first = Eigen::Index(sources.size());
         for (const int32_t row : rows) sources.push_back(int32_t(before[b]) + row);
-        if (sources.size() > size_t(std::numeric_limits<int32_t>::max()))
-            throw ArgumentError(fmt::format("{} has more than 2^31 vertices", name));
-        if (!is_flat) continue;
+        if (!has_flat_faces(block)) continue;
         const size_t kept = rows.size() - block.triangles.size();
         next_corner[b] = int32_t(block.first) + int32_t(kept);
         choose_rows(block, rows, name);

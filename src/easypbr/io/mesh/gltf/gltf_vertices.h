@@ -33,8 +33,8 @@ struct GltfFlatFaces {
 
 /// Gives each face of blocks without normals vertices of its own. Others of such a block remain only for
 /// lines. `faces` and `edges` are the corners of all faces and ends of all lines, counted over all blocks.
-/// `name` is for messages. Throws ArgumentError when 32-bit indices cannot count the vertices, FormatError as
-/// charge_memory() does.
+/// `name` is for messages. Throws FormatError when 32-bit indices cannot count the vertices, before any are
+/// made, and as charge_memory() does.
 GltfFlatFaces split_flat_faces(std::vector<VertexBlock>& blocks, std::vector<int32_t>& faces,
                                std::vector<int32_t>& edges, const std::string& name);
 
