@@ -216,7 +216,7 @@ class Viewer(Sharing):
     def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, NDArray[Any]]:
         """Exact values through the pixels' centres, float32, by name: albedo, normal_world, depth, roughness, metallic,
         occlusion, ambient_occlusion, object_id and element_id; all of them unless named. A name that render_layers() has too
-        means the same."""
+        means the same: of surfels that overlap both give the nearest one's."""
         if isinstance(names, str):
             names = [names]
         return self._handle.layers(list(_easypbr.layer_names() if names is None else names), size)

@@ -5,6 +5,9 @@
 #include <random>
 
 #include "easypbr/core/color.h"
+#include "easypbr/gl/context.h"
+#include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
@@ -101,9 +104,14 @@ TEST(Surfels, BlendColoursBetweenTheirOwn) {
     data.materials[0].base_color = Vec3(1, 1, 1);
     app::Session session = plain_session(scene_of(data), 100);
     look_from(session, Vec3d(0, 0, 5));
-    const Image albedo = session.render_layers({"albedo"}).at("albedo");
+    const auto context = gl::Context::create();
+    const gl::ContextScope scope(*context);
+    Renderer renderer;
+    renderer.draw(session.scene().snapshot(), session.resolve(), {.size = {100, 100}});
+    const Image albedo = renderer.read_layer(Layer::albedo);
     const float low = linear_from_srgb(Vec3(0.2f, 0.2f, 0.2f))[0],
                 high = linear_from_srgb(Vec3(0.8f, 0.8f, 0.8f))[0];
+    int between = 0;
     for (int x = 20; x < 80; ++x) {
         const float v = albedo.at<float>(x, 50)[0];
         EXPECT_GE(v, low - 1e-4f);
@@ -114,7 +122,9 @@ TEST(Surfels, BlendColoursBetweenTheirOwn) {
         if (x > 55) {
             EXPECT_NEAR(v, high, 1e-3f);
         }
+        between += v > low + 0.01f && v < high - 0.01f;
     }
+    EXPECT_GE(between, 1);
 }
 
 /// Surfels on the unit sphere, evenly (a Fibonacci spiral) or at random.
@@ -266,6 +276,38 @@ TEST(Surfels, CanBeAskedOfAnyCloud) {
     EXPECT_NEAR(covered(data), 59.7 * 59.7, 0.12 * 59.7 * 59.7);
     data.N = {};
     EXPECT_GT(covered(data), 1000);
+}
+
+// Pictures show one surface where surfels overlap, and so does the occlusion of its light, in layers too.
+TEST(Surfels, AreOccludedInLayersAsInPictures) {
+    const auto context = gl::Context::create();
+    const gl::ContextScope scope(*context);
+    const SceneSnapshot scene = scene_of(sphere_of_surfels(3000, 6)).snapshot();
+    Settings settings;
+    settings.ssao.enabled = true;
+    settings.ground.mode = GroundMode::none;
+    const Vec2i size(160, 120);
+    const ResolvedSettings resolved = resolve(scene, settings, size);
+    for (const bool native : {true, false}) {
+        Renderer renderer;
+        renderer.allow_native_geometry(native);
+        DrawOptions options{.size = size};
+        renderer.draw(scene, resolved, options);
+        const Image expected = renderer.read_layer(Layer::ambient_occlusion);
+        options.layers = options.occlusion = true;
+        renderer.draw(scene, resolved, options);
+        const Image found = renderer.read_layer(Layer::ambient_occlusion),
+                    depth = renderer.read_layer(Layer::depth);
+        int seen = 0, different = 0;
+        for (size_t i = 0; i < found.pixels<float>().size(); ++i) {
+            if (!(depth.pixels<float>()[i] > 0)) continue;
+            ++seen;
+            different += found.pixels<float>()[i] != expected.pixels<float>()[i];
+        }
+        EXPECT_GT(seen, 5000) << native;
+        // The same pass of the same surfaces.
+        EXPECT_EQ(different, 0) << native;
+    }
 }
 
 }  // namespace

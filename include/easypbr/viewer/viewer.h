@@ -105,8 +105,9 @@ class Viewer {
     /// (unit), "depth" (along the viewing direction, in world units), "roughness", "metallic", "occlusion"
     /// (the material's), "ambient_occlusion" (1: nothing occludes; needs ssao.enabled), "object_id" and
     /// "element_id" (1 + the number of the object and of its face or point). All are 0 where there is
-    /// nothing. Through a lens depth is that of the pixels' own rays, all else that of the nearest pixel of
-    /// the picture without it. Throws NameError with the nearest name, and as render() does.
+    /// nothing. Of surfels that overlap, which pictures blend, the nearest's; but "ambient_occlusion" is that
+    /// of pictures. Through a lens depth is that of the pixels' own rays, all else that of the nearest pixel
+    /// of the picture without it. Throws NameError with the nearest name, and as render() does.
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);
     /// The scene as it is now and the camera of the next picture.
