@@ -131,25 +131,28 @@ TEST(LensDepth, IsFocusedAt) {
     EXPECT_NEAR(session.focus_at(60, 130), expected, 1e-6 * expected);
 }
 
-// Points have the depth that is drawn: each of them faces the camera.
+// Points have the depth that is drawn: each of them faces the camera. So have those that a cloud is shown as
+// that lacks what surfels or splats are made of.
 TEST(LensDepth, OfPointsIsTheDrawnOne) {
-    Session session = floor_session();
-    Array3f::Dense V(1, 3);
-    V << 0.5f, 0.25f, 4;
-    MeshData data;
-    data.V = Array3f(V);
-    data.style.mode = DrawMode::points;
-    session.scene().clear();
-    session.scene().show(Mesh(data), "point");
-    session.settings().style.point_size = 20;
-    const Image depth = session.render_layers({"depth"}).at("depth");
-    int seen = 0;
-    for (const float found : depth.pixels<float>()) {
-        if (found == 0) continue;
-        ++seen;
-        EXPECT_NEAR(found, 4, 1e-5);
+    for (const DrawMode mode : {DrawMode::points, DrawMode::surfels, DrawMode::splats}) {
+        Session session = floor_session();
+        Array3f::Dense V(1, 3);
+        V << 0.5f, 0.25f, 4;
+        MeshData data;
+        data.V = Array3f(V);
+        data.style.mode = mode;
+        session.scene().clear();
+        session.scene().show(Mesh(data), "point");
+        session.settings().style.point_size = 20;
+        const Image depth = session.render_layers({"depth"}).at("depth");
+        int seen = 0;
+        for (const float found : depth.pixels<float>()) {
+            if (found == 0) continue;
+            ++seen;
+            EXPECT_NEAR(found, 4, 1e-5);
+        }
+        EXPECT_GT(seen, 100) << int(mode);
     }
-    EXPECT_GT(seen, 100);
 }
 
 }  // namespace

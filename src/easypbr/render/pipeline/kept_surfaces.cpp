@@ -20,10 +20,11 @@ std::vector<uint32_t> parts_of_faces(const MeshData& mesh) {
 }
 
 /// Points beside discs or splats have no shape of their own.
-VertexShape vertex_shape_of(const DrawStyle& style, SplatDepth splats) {
+VertexShape vertex_shape_of(const MeshData& mesh, const DrawStyle& style, SplatDepth splats) {
     if (style.show_points) return VertexShape::none;
-    if (draws_discs(style.mode)) return VertexShape::disc;
-    const bool is_splat = style.mode == DrawMode::splats && splats != SplatDepth::expected;
+    const DrawMode drawn = primitive_of(mesh, style);
+    if (draws_discs(drawn)) return VertexShape::disc;
+    const bool is_splat = drawn == DrawMode::splats && splats != SplatDepth::expected;
     return is_splat ? VertexShape::splat : VertexShape::none;
 }
 
@@ -86,7 +87,7 @@ SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) co
         const DrawStyle style = resolve_style(*object.mesh, resolved_.settings.style);
         as_mesh.push_back(style.mode == DrawMode::mesh);
         frame.only_faces.push_back(style.mode == DrawMode::mesh && !style.show_points);
-        frame.vertex_shapes.push_back(vertex_shape_of(style, resolved_.settings.splats.depth));
+        frame.vertex_shapes.push_back(vertex_shape_of(*object.mesh, style, resolved_.settings.splats.depth));
     }
     for (const ElementSources& source : drawable_.sources) frame.voxel_sizes.push_back(source.voxel_size);
     const float near = float(frame.camera.near), far = float(frame.camera.far);
