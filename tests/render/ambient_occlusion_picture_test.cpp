@@ -354,8 +354,10 @@ TEST(AmbientOcclusion, SaysWhatItExpected) {
     Scene scene;
     scene.show(make_sphere(), "sphere");
     app::Session session = plain_session(scene);
+    // Switched off, nothing occludes anything, whatever a picture before has found.
+    session.settings().ssao.enabled = true;
+    session.render();
     session.settings().ssao.enabled = false;
-    // Switched off, nothing occludes anything.
     const Image layer = session.render_layers({"ambient_occlusion"}).at("ambient_occlusion");
     EXPECT_EQ(*layer.at<float>(32, 32), 1.0f);
     EXPECT_EQ(*layer.at<float>(0, 0), 0.0f);

@@ -327,6 +327,7 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
     // those that overlap.
     const bool has_surfels = !list.of(DrawMode::surfels).empty();
     const bool occludes = options.occlusion && resolved.settings.ssao.enabled;
+    if (!occludes) pipeline_.targets().remove_ambient_occlusion();
     if (occludes && has_surfels) {
         pipeline_.draw_surfaces(frame, list, {});
         pipeline_.occlude_surfaces(frame, list);
