@@ -49,34 +49,38 @@ class Pool {
     /// Null: the system has none either.
     void* take(size_t bytes) {
         const std::lock_guard lock(mutex_);
-        // The last that came back is the likeliest to be in a cache.
-        const auto found = std::find_if(kept_.rbegin(), kept_.rend(),
-                                        [&](const Block& block) { return block.bytes == bytes; });
-        void* memory = nullptr;
-        if (found != kept_.rend()) {
-            memory = found->memory;
-            kept_bytes_ -= bytes;
-            kept_.erase(std::next(found).base());
+        Block block{nullptr, bytes};
+        if (const auto found = find(bytes); found != kept_.end()) {
+            block = *found;
+            if (block.bytes != bytes) larger_.push_back(block);
+            kept_bytes_ -= block.bytes;
+            kept_.erase(found);
         } else {
             const size_t given = given_ + bytes;
             shrink(most_given_ > given ? most_given_ - given : 0);
-            memory = allocate(bytes);
-            if (!memory) {
+            block.memory = allocate(bytes);
+            if (!block.memory) {
                 shrink(0);
-                memory = allocate(bytes);
+                block.memory = allocate(bytes);
             }
-            if (!memory) return nullptr;
+            if (!block.memory) return nullptr;
         }
-        given_ += bytes;
+        given_ += block.bytes;
         most_given_ = std::max(most_given_, given_);
-        return memory;
+        return block.memory;
     }
 
     void give(void* memory, size_t bytes) noexcept {
         const std::lock_guard lock(mutex_);
-        given_ -= bytes;
-        kept_.push_back({memory, bytes});
-        kept_bytes_ += bytes;
+        Block block{memory, bytes};
+        const auto larger = std::ranges::find(larger_, memory, &Block::memory);
+        if (larger != larger_.end()) {
+            block = *larger;
+            larger_.erase(larger);
+        }
+        given_ -= block.bytes;
+        kept_.push_back(block);
+        kept_bytes_ += block.bytes;
         shrink(most_kept);
     }
 
@@ -91,6 +95,18 @@ class Pool {
         size_t bytes;
     };
 
+    /// The smallest block that is large enough, up to twice as large: the passes of a frame ask for other
+    /// sizes one after the other. Of those of one size the last that came back, the likeliest to be in a
+    /// cache.
+    std::vector<Block>::iterator find(size_t bytes) {
+        auto found = kept_.end();
+        for (auto block = kept_.begin(); block != kept_.end(); ++block)
+            if (block->bytes >= bytes && block->bytes / 2 <= bytes &&
+                (found == kept_.end() || block->bytes <= found->bytes))
+                found = block;
+        return found;
+    }
+
     /// Frees the oldest blocks until no more bytes are kept.
     void shrink(size_t to) {
         auto block = kept_.begin();
@@ -102,7 +118,8 @@ class Pool {
     }
 
     std::mutex mutex_;
-    std::vector<Block> kept_;  ///< in the order in which they came back
+    std::vector<Block> kept_;    ///< in the order in which they came back
+    std::vector<Block> larger_;  ///< given away for less
     size_t kept_bytes_ = 0, given_ = 0, most_given_ = 0;
 };
 

@@ -8,7 +8,7 @@
 
 namespace easypbr {
 
-/// Memory for so many bytes, by the pool where it holds a block of that size. The system hands out pages one
+/// Memory for so many bytes, by the pool where it holds a block of up to twice that size. The system hands out pages one
 /// by one and clears each, which takes longer than most passes take to fill them. Throws std::bad_alloc. Any
 /// thread.
 void* take_pooled(size_t bytes);
