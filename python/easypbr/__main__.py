@@ -9,8 +9,9 @@ from ._easypbr import main as run
 
 def main() -> int:
     """Runs the command line on sys.argv; returns the exit code."""
-    # Python's handlers would wait for the native job to end.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # Python's handlers would wait for the native job to end. Ignored it is in the background of a script.
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     # The command that hands over to this package.
     os.environ["EASYPBR_PYTHON"] = sys.executable

@@ -176,6 +176,14 @@ def test_the_command_line_can_be_interrupted(tmp_path):
     assert not (tmp_path / "a.png").exists()
 
 
+@pytest.mark.parametrize("before, after", [("SIG_IGN", "SIG_IGN"), ("default_int_handler", "SIG_DFL")])
+def test_the_command_line_ignores_ctrl_c_where_it_was_ignored(tmp_path, before, after):
+    """In the background of a script."""
+    code = f"import signal, easypbr.__main__; signal.signal(signal.SIGINT, signal.{before}); assert easypbr.__main__.main() == 0; "
+    result = run(["-c", code + f"assert signal.getsignal(signal.SIGINT) is signal.{after}", "--version"], tmp_path)
+    assert result.returncode == 0, result.stderr
+
+
 def test_one_of_a_list_is_taken_in_any_case():
     square = ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
     lines = easypbr.as_mesh({"V": square[0], "E": "LOOP"})

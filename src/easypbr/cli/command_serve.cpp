@@ -1,9 +1,9 @@
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
@@ -74,25 +74,30 @@ void declare_serve(CLI::App& command, ServeCommand& options) {
         ->option_text("FOLDER");
 }
 
-volatile std::sig_atomic_t stopped = 0;
+volatile sig_atomic_t stopped = 0;
 
-/// While it lives, Ctrl-C and the like are noted.
+/// While it lives, Ctrl-C and the like are noted. What was ignored before, as under nohup, still is.
 class Signals {
   public:
     Signals() {
         stopped = 0;
-        for (size_t i = 0; i < numbers.size(); ++i)
-            before_[i] = std::signal(numbers[i], [](int) { stopped = 1; });
+        struct sigaction note {};
+        note.sa_handler = [](int) { stopped = 1; };
+        note.sa_flags = SA_RESTART;
+        for (size_t i = 0; i < numbers.size(); ++i) {
+            ::sigaction(numbers[i], nullptr, &before_[i]);
+            if (before_[i].sa_handler != SIG_IGN) ::sigaction(numbers[i], &note, nullptr);
+        }
     }
     ~Signals() {
-        for (size_t i = 0; i < numbers.size(); ++i) std::signal(numbers[i], before_[i]);
+        for (size_t i = 0; i < numbers.size(); ++i) ::sigaction(numbers[i], &before_[i], nullptr);
     }
     Signals(const Signals&) = delete;
     Signals& operator=(const Signals&) = delete;
 
   private:
     static constexpr std::array<int, 3> numbers = {SIGINT, SIGTERM, SIGHUP};
-    std::array<void (*)(int), 3> before_{};
+    std::array<struct sigaction, 3> before_{};
 };
 
 /// This machine's address as the ssh session reached it: the third word of SSH_CONNECTION.
