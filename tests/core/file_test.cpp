@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <pwd.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -184,6 +185,90 @@ TEST_F(File, LeavesOtherBusErrorsAlone) {
     write_file(folder_ / "a", random_text(2'000'000));
     const FileBytes file(folder_ / "a");
     EXPECT_EXIT(::raise(SIGBUS), testing::KilledBySignal(SIGBUS), "");
+}
+
+struct sigaction found_action;
+
+void say(std::string_view text) {
+    static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
+}
+
+/// As Python's faulthandler: it says something, puts back what it found and raises the signal again.
+void tell_and_give_up(int signal) {
+    say("gave up.");
+    ::sigaction(signal, &found_action, nullptr);
+    ::raise(signal);
+}
+
+/// As Python's faulthandler once it has been disabled.
+void tell_and_return(int) {
+    say("told.");
+}
+
+/// Makes it what SIGBUS does, and puts back what it did before.
+class Handler {
+  public:
+    explicit Handler(void (*handler)(int)) {
+        struct sigaction action {};
+        action.sa_handler = handler;
+        action.sa_flags = SA_NODEFER;
+        ::sigaction(SIGBUS, &action, &found_action);
+    }
+    ~Handler() { ::sigaction(SIGBUS, &found_action, nullptr); }
+    Handler(const Handler&) = delete;
+    Handler& operator=(const Handler&) = delete;
+};
+
+/// Reads what a file mapped by the test itself has lost: a fault that no guard mends.
+void read_what_is_gone(const fs::path& path) {
+    const Descriptor file(::open(path.c_str(), O_RDWR));
+    const auto* bytes =
+        static_cast<const volatile char*>(::mmap(nullptr, 8192, PROT_READ, MAP_SHARED, file.get(), 0));
+    fs::resize_file(path, 0);
+    static_cast<void>(bytes[5000]);
+}
+
+// A program may enable its own handler after the first large file.
+TEST_F(File, TruncatedIsNoSignalBehindALaterHandler) {
+    const std::string text = random_text(2'000'000);
+    write_file(folder_ / "first", text);
+    const FileBytes first(folder_ / "first");
+    const Handler handler(tell_and_give_up);
+    for (const char* name : {"second", "third"}) {
+        write_file(folder_ / name, text);
+        const FileBytes file(folder_ / name);
+        fs::resize_file(folder_ / name, 1'000'000);
+        EXPECT_EQ(file.text().substr(1'100'000), std::string(900'000, '\0'));
+        EXPECT_THROW(file.check(), FileError);
+    }
+}
+
+// Each handler is called once, the newest first, and the process ends as without the guard.
+TEST_F(File, LeavesOtherBusErrorsToALaterHandler) {
+    write_file(folder_ / "a", random_text(2'000'000));
+    write_file(folder_ / "gone", random_text(8192));
+    const FileBytes first(folder_ / "a");
+    const Handler handler(tell_and_give_up);
+    const FileBytes second(folder_ / "a");
+    EXPECT_EXIT(::raise(SIGBUS), testing::KilledBySignal(SIGBUS), "^gave up\\.$");
+    EXPECT_EXIT(read_what_is_gone(folder_ / "gone"), testing::KilledBySignal(SIGBUS), "^gave up\\.$");
+}
+
+// One that returns has dealt with a signal that was sent. From a fault that it has not mended it would return
+// for ever.
+TEST_F(File, ABusErrorThatNobodyMendsEndsTheProcess) {
+    write_file(folder_ / "a", random_text(2'000'000));
+    write_file(folder_ / "gone", random_text(8192));
+    const FileBytes first(folder_ / "a");
+    const Handler handler(tell_and_return);
+    const FileBytes second(folder_ / "a");
+    const auto send_and_read = [&] {
+        ::raise(SIGBUS);
+        ::raise(SIGBUS);
+        read_what_is_gone(folder_ / "gone");
+    };
+    // Other tests' handler may still be known.
+    EXPECT_EXIT(send_and_read(), testing::KilledBySignal(SIGBUS), "^(told\\.){3}(gave up\\.)?$");
 }
 
 TEST_F(File, ReadsAPipeToItsEnd) {
