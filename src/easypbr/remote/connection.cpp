@@ -170,6 +170,9 @@ void Connection::on_written(Code error) {
 
 void Connection::stop_all() {
     deadline_.cancel();
+    // A forked child that holds a copy of the socket would keep the other side waiting.
+    Code ignored;
+    stream().socket().shutdown(net::socket_base::shutdown_both, ignored);
     stream().close();
 }
 

@@ -50,6 +50,23 @@ void remove_stale(const std::filesystem::path& path) {
     std::filesystem::remove(path, ignored);
 }
 
+/// Nobody can connect any more, even where a forked child holds a copy of the socket.
+template <class Acceptor>
+void close_listening(Acceptor& acceptor) {
+    if (!acceptor.is_open()) return;
+    ::shutdown(acceptor.native_handle(), SHUT_RDWR);
+    Code ended;
+    acceptor.non_blocking(true, ended);
+    // Those whom a Unix socket has not accepted yet wait until its last copy is closed; TCP has reset them.
+    while (!ended) {
+        typename Acceptor::protocol_type::socket waiting(acceptor.get_executor());
+        acceptor.accept(waiting, ended);
+        Code ignored;
+        if (!ended) waiting.shutdown(net::socket_base::shutdown_both, ignored);
+    }
+    acceptor.close(ended);
+}
+
 }  // namespace
 
 void check_address(const std::string& bind) {
@@ -193,9 +210,8 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
     void say_goodbye() {
         stopping_ = true;
         events_ = nullptr;
-        Code ignored;
-        tcp_.close(ignored);
-        local_.close(ignored);
+        close_listening(tcp_);
+        close_listening(local_);
         pause_.expires_after(std::chrono::milliseconds(500));
         pause_.async_wait([this](Code) { drop_all(); });
         const auto connections = connections_;
