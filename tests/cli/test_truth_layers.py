@@ -1,5 +1,6 @@
 """`easypbr render --layers` writes ground truth beside the picture's own layers; the files agree with each other."""
 import json
+import os
 import re
 
 import numpy as np
@@ -71,6 +72,16 @@ def test_instances_behind_the_camera_have_no_pixels(render, sphere, tmp_path):
     render(sphere, "--camera-position", "0,0,0", "--camera-target", "0,0,-1", "-o", "out.png", "--layers", "instances")
     (instance,) = json.loads((tmp_path / "out_instances.json").read_text())
     assert [None, None] in instance["corners_px"]  # no NaN, which is no JSON
+
+
+def test_names_that_are_not_utf_8_are_written(render, sphere, tmp_path):
+    """JSON is UTF-8: other bytes become U+FFFD, as in `easypbr info --json`."""
+    file = os.fsencode(tmp_path) + b"/r\xf6hre.obj"
+    with open(file, "wb") as copy:
+        copy.write(sphere.read_bytes())
+    render(os.fsdecode(file), "-o", "out.png", "--layers", "instances")
+    (instance,) = json.loads((tmp_path / "out_instances.json").read_text(encoding="utf-8"))
+    assert "r\ufffdhre" in instance["name"]
 
 
 @pytest.mark.parametrize("name, message", [

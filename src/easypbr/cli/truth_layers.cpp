@@ -143,7 +143,8 @@ void write_truth(app::Session& session, const fs::path& picture, const std::vect
     if (!options.instances) return;
     json list = json::array();
     for (const dataset::Instance& instance : truth.instances) list.push_back(json_of(instance));
-    write_file(truth_path(picture, instances), list.dump(1) + "\n");
+    write_file(truth_path(picture, instances),
+               list.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace easypbr::cli
