@@ -5,8 +5,11 @@ import pty
 import shlex
 import subprocess
 import sys
+import threading
 
 import pytest
+
+import easypbr.dataset.__main__
 
 
 def test_command_line(tmp_path):
@@ -39,6 +42,26 @@ def test_command_line_errors_are_one_line(tmp_path, arguments, code, message):
     (line,) = done.stderr.splitlines()
     assert done.returncode == code and line.startswith(f"easypbr: error: {message}"), line
     assert [path.name for path in tmp_path.iterdir()] == ["wrong.toml"] and done.stdout == ""
+
+
+def refused_thread(_):
+    raise RuntimeError("can't start new thread")
+
+
+def out_of_memory(*_, **__):
+    raise MemoryError
+
+
+@pytest.mark.parametrize("owner, name, what, message", [
+    (easypbr.dataset.__main__, "generate", out_of_memory, "out of memory: try fewer workers or a smaller image"),
+    (threading.Thread, "start", refused_thread, "dataset: cannot start a thread (see the limits of processes: ulimit -u"),
+])  # fmt: skip
+def test_what_the_system_has_not_is_one_line(tmp_path, monkeypatch, capsys, owner, name, what, message):
+    monkeypatch.setattr(owner, name, what)
+    arguments = ["--demo", "-o", str(tmp_path / "out"), "--count", "1", "--writers", "yolo", "--workers", "1"]
+    assert easypbr.dataset.__main__.main(arguments) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"easypbr: error: {message}")
 
 
 def said_on_a_terminal(command, folder):

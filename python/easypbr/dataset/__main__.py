@@ -112,6 +112,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (Error, OSError, ImportError) as error:
         _tell("error", error)
         return 1
+    except MemoryError:
+        _tell("error", "out of memory: try fewer workers or a smaller image; what is finished is kept")
+        return 1
     except KeyboardInterrupt:
         print("easypbr: interrupted: started again it goes on", file=sys.stderr)
         return 130

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _easypbr
-from ..errors import ArgumentError
+from ..errors import ArgumentError, Error
 from . import cluster
 from .folder import FolderWriter, claim, keep_memory, locked
 from .frames import FrameMaker
@@ -92,6 +92,17 @@ def check_engine(engine: str, address: str | None, workers: int | None, threads:
         raise ArgumentError("dataset: workers: a cluster starts as many as it has cores for; expected none with an address")
 
 
+@contextlib.contextmanager
+def _starting_thread() -> Iterator[None]:
+    """Raises Error where the system gives no thread, for which Python has no class of its own."""
+    try:
+        yield
+    except RuntimeError as error:
+        if "can't start new thread" not in str(error):
+            raise
+        raise Error("dataset: cannot start a thread (see the limits of processes: ulimit -u, pids.max)") from None
+
+
 def _make_here(spec: DatasetSpec, folder: Path, missing: list[int], progress: "_Progress") -> set[str]:
     """Each frame is written while the next one is drawn: compressing pictures keeps a single core busy."""
     maker = FrameMaker(spec)
@@ -107,7 +118,8 @@ def _make_here(spec: DatasetSpec, folder: Path, missing: list[int], progress: "_
         for index in missing:
             frame = maker.make(index)
             finish(written)
-            written = [pool.submit(writer.write_frame, frame)]
+            with _starting_thread():
+                written = [pool.submit(writer.write_frame, frame)]
         finish(written)
     return set(maker.skipped)
 
