@@ -272,7 +272,8 @@ void add_overrides(Table& table) {
         table.push_back(make("material." + name, in_material(member), doc + " Empty: the material's own."));
     };
     table.push_back(color("material.color", EASYPBR_AT(material.color),
-                          "Base colour of every material; automatic: the material's own."));
+                          "Base colour of every material, but where labels, scalars or other data colour; "
+                          "automatic: the material's own."));
     table.push_back(
         make("material.metallic", EASYPBR_AT(material.metallic),
              "Metallic factor of every material, 0 dielectric to 1 metal; automatic: the material's own.", "",

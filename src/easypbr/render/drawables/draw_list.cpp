@@ -35,6 +35,19 @@ struct Source {
     const MeshData& mesh() const { return data ? *data : *object.mesh; }
 };
 
+/// With the settings' overrides. Colours of data take the place of the base colour: no setting replaces them.
+Material drawn_material(const Source& source, const MeshPart& part) {
+    const Material own = material_of(source.mesh(), part);
+    if (!source.colors.from_data) return overridden(own, source.settings.material, source.textures);
+    // Texture coordinates that are places in a table are none of an image.
+    Material textures = source.colors.values ? Material() : source.textures;
+    textures.shader = source.textures.shader;
+    Material material = overridden(own, source.settings.material, textures);
+    material.base_color = Vec3::Ones();
+    material.base_color_texture = own.base_color_texture;
+    return material;
+}
+
 DrawItem make_item(const Source& source, const MeshPart& part) {
     const MeshData& mesh = source.mesh();
     DrawItem item;
@@ -42,14 +55,13 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     item.data = source.data;
     item.colors = source.colors;
     item.part = part;
-    item.material = overridden(material_of(mesh, part), source.settings.material, source.textures);
+    item.material = drawn_material(source, part);
     item.style = source.style;
     item.two_sided = source.style.two_sided.value_or(item.material.double_sided);
     const bool own_color = !source.settings.material.color.value();
     item.with_colors =
         !mesh.C.empty() && (source.colors.from_data || (own_color && source.colors.vertex_colors));
-    if (source.colors.from_data || (item.with_colors && item.material.has_default_color()))
-        item.material.base_color = Vec3::Ones();
+    if (item.with_colors && item.material.has_default_color()) item.material.base_color = Vec3::Ones();
     if (!source.colors.textured || (source.colors.from_data && item.with_colors))
         item.material.base_color_texture = {};
     item.alpha = item.material.alpha_mode_for(item.with_colors && source.transparent_colors);

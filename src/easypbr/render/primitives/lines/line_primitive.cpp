@@ -74,12 +74,16 @@ void set_style(To& to, const DrawItem& item) {
     to.set("u_always", is_over(item) ? 1.0f : 0.0f);
 }
 
+/// Its colours are those of the item's table of values.
+bool reads_table(const DrawItem& item, const Stroke& stroke) {
+    return !stroke.color && item.colors.values;
+}
+
 /// The same of a stroke; the table of values is set apart.
 template <class To>
 void set_colors(To& to, const DrawItem& item, const Stroke& stroke) {
-    const bool own = !stroke.color;
-    to.set("u_nearer_end", own && item.colors.labels ? 1.0f : 0.0f);
-    to.set("u_from_table", own && item.colors.values ? 1.0f : 0.0f);
+    to.set("u_nearer_end", !stroke.color && item.colors.labels ? 1.0f : 0.0f);
+    to.set("u_from_table", reads_table(item, stroke) ? 1.0f : 0.0f);
 }
 
 }  // namespace
@@ -180,10 +184,11 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
         if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
         program.set("u_clip_from_mesh", clip_from_mesh(frame, item));
         set_style(program, item);
-        if (item.colors.values) textures_.get(item.material.base_color_texture, true).bind(table_unit);
         for (const Stroke& stroke : strokes_of(item)) {
             const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normal_length);
             if (buffers.count == 0) continue;
+            if (reads_table(item, stroke))
+                textures_.get(item.material.base_color_texture, true).bind(table_unit);
             program.set("u_color", stroke.color_or_none());
             set_colors(program, item, stroke);
             gl::draw_quads(state, buffers.array, buffers.count);
@@ -224,10 +229,10 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         set_layers(of_item, kind, next);
         of_item.set("u_depth_target", *opaque_);
         if (kind != Kind::nearest) of_item.set("u_nearest_line", nearest_);
-        if (item.colors.values)
-            of_item.set("u_table", textures_.host(item.material.base_color_texture, true));
         for (const Stroke& stroke : strokes_of(item)) {
             ShaderInputs values = of_item;
+            if (reads_table(item, stroke))
+                values.set("u_table", textures_.host(item.material.base_color_texture, true));
             set_colors(values, item, stroke);
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normal_length);
             native::draw_lines(values.native(transfers), region,
