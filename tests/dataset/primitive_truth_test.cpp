@@ -295,5 +295,41 @@ TEST(PrimitiveTruth, LeavesThePictureOfSurfelsAsItIs) {
     EXPECT_TRUE(std::ranges::equal(truth.layers.at("hdr").floats(), expected));
 }
 
+// Surfels without normals and splats without Gaussians are drawn as points: so are their ground truth and
+// picks.
+TEST(PrimitiveTruth, IsOfWhatIsDrawnInPlaceOfAMode) {
+    for (const bool with_faces : {false, true}) {
+        const auto shown_as = [&](DrawMode mode) {
+            Mesh mesh = primitives(Kind::points_in_pixels, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)},
+                                   {-0.3, -0.3, -3}, 0.2f);
+            mesh.edit([&](MeshData& d) {
+                d.style.mode = mode;
+                if (with_faces) d.F = Array3i::Dense{{0, 1, 2}};
+            });
+            Scene scene;
+            scene.show(mesh, "points");
+            return scene;
+        };
+        const std::vector<std::string> layers = {"depth", "instance_id"};
+        const GroundTruth expected = truth_of(shown_as(DrawMode::points), layers);
+        ASSERT_GT(expected.instances.at(0).pixels_visible, 1000);
+        for (const DrawMode mode : {DrawMode::surfels, DrawMode::splats}) {
+            const Scene scene = shown_as(mode);
+            const GroundTruth truth = truth_of(scene, layers);
+            EXPECT_EQ(truth.layers.at("depth").floats(), expected.layers.at("depth").floats()) << int(mode);
+            EXPECT_EQ(truth.layers.at("instance_id").integers(), expected.layers.at("instance_id").integers())
+                << int(mode);
+            app::Session session = plain_session(scene);
+            session.set_camera(opencv_camera((Mat3d() << f, 0, cx, 0, f, cy, 0, 0, 1).finished(), size));
+            // The first point is at (-0.3, 0.3) of OpenCV's axes, 3 away.
+            const std::optional<app::Pick> pick =
+                session.pick({cx - 0.3 * f / 3, cy + 0.3 * f / 3}, Vec2i(size));
+            ASSERT_TRUE(pick) << int(mode);
+            EXPECT_EQ(pick->element, 0) << int(mode);
+            EXPECT_FALSE(pick->is_face) << int(mode);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::dataset::primitive_truth_test
