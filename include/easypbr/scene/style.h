@@ -25,7 +25,7 @@ struct Style {
     Override<PointShape> point_shape;    ///< automatic: round
     Override<float> surfel_scale;        ///< scale factor of the size of surfels, above 0; automatic: 1
     Override<bool> splat_antialias;      ///< splats keep their light where they are small; automatic: no
-    Override<float> voxel_size;  ///< edge length, world units, above 0; automatic: the data's, or the spacing
+    Override<float> voxel_size;  ///< edge length, mesh units, above 0; automatic: the data's, or the spacing
     Override<float> line_width;  ///< pixels, 0.1 to 1000; automatic: 1.5
     Override<float> line_dash;  ///< length of dashes and gaps in pixels, 0 to 10000; 0, also automatic: solid
     Override<Vec3> line_color;  ///< automatic: colours of the data or the material of lines, else dark; dark

@@ -11,6 +11,8 @@ namespace easypbr::gpu {
 namespace {
 
 constexpr size_t segment_grain = 1 << 14;
+/// Length of normals, as a part of the mesh's diagonal.
+constexpr float normal_part = 0.02f;
 
 void put(float (&to)[3], const Array3f& V, Eigen::Index row) {
     for (int k = 0; k < 3; ++k) to[k] = V(row, k);
@@ -99,15 +101,38 @@ std::vector<Segment> wireframe_segments(const MeshData& mesh) {
     return segments;
 }
 
-std::vector<Segment> normal_segments(const MeshData& mesh, float length) {
+NormalLines normal_lines(std::optional<float> length, const Mat3d& pose) {
+    NormalLines lines{length, {}};
+    Mat3d metric = pose.transpose() * pose;
+    const double square = metric.trace() / 3;
+    // A rotation leaves rounding errors, which would tell poses of one scale apart.
+    if ((metric - square * Mat3d::Identity()).norm() <= 1e-6 * square) metric = square * Mat3d::Identity();
+    for (int i = 0; i < 9; ++i) lines.metric[size_t(i)] = float(metric(i / 3, i % 3));
+    return lines;
+}
+
+std::vector<Segment> normal_segments(const MeshData& mesh, const NormalLines& lines) {
     if (mesh.N.empty() && mesh.F.empty()) return {};
     const Array3f N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
+    Mat3d metric = Mat3(lines.metric.data()).cast<double>();
+    Mat3d inverse = metric.inverse();
+    if (!inverse.allFinite() || !(metric.determinant() > 0)) metric = inverse = Mat3d::Identity();
+    const Vec3d diagonal =
+        (mesh.V.colwise().maxCoeff() - mesh.V.colwise().minCoeff()).transpose().cast<double>();
+    const double length = lines.length
+                              ? double(*lines.length)
+                              : double(normal_part * float(std::sqrt(diagonal.dot(metric * diagonal))));
     std::vector<Segment> segments(size_t(mesh.V.rows()));
     parallel_for(segments.size(), segment_grain, [&](size_t i) {
         const auto row = Eigen::Index(i);
         Segment& segment = segments[i];
         put(segment.a, mesh.V, row);
-        for (int k = 0; k < 3; ++k) segment.b[k] = mesh.V(row, k) + length * N(row, k);
+        // In the world it is along L^-T n, whose square is n^T (L^T L)^-1 n; L^-1 takes it back.
+        const Vec3d n = N.row(row).transpose().cast<double>(), along = inverse * n;
+        const double square = n.dot(along);
+        const Vec3 way =
+            (square > 0 ? Vec3d(length / std::sqrt(square) * along) : Vec3d::Zero()).cast<float>();
+        for (int k = 0; k < 3; ++k) segment.b[k] = mesh.V(row, k) + way[k];
     });
     return segments;
 }

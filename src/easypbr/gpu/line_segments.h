@@ -1,6 +1,8 @@
 // The line segments that an object is drawn with: its edges, its wireframe, its normals.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "easypbr/gpu/packing.h"
@@ -32,7 +34,21 @@ std::vector<Segment> edge_segments(const MeshData& mesh);
 /// left out.
 std::vector<Segment> wireframe_segments(const MeshData& mesh);
 
-/// From each vertex along its normal, computed where the mesh has none; white.
-std::vector<Segment> normal_segments(const MeshData& mesh, float length);
+/// How lines along normals stand in a pose, whose rotation and place do not matter.
+struct NormalLines {
+    std::optional<float> length;  ///< world units; nothing: 2 % of the diagonal of V's box, in the pose
+    /// L^T L of the linear part L of the pose, row by row: its products with differences of places are those
+    /// of the world.
+    std::array<float, 9> metric = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+    auto operator<=>(const NormalLines&) const = default;
+};
+
+/// The same for all poses of one scale.
+NormalLines normal_lines(std::optional<float> length, const Mat3d& pose);
+
+/// From each vertex along the normal of the surface in its pose, computed where the mesh has none; white.
+/// In a pose without an inverse they are as in none.
+std::vector<Segment> normal_segments(const MeshData& mesh, const NormalLines& lines);
 
 }  // namespace easypbr::gpu

@@ -315,7 +315,7 @@ void add_style(Table& table) {
         "opacity is lowered as they grow. For scenes that were trained this way.",
         "no");
     add("voxel_size", &Style::voxel_size, "Edge length of voxels.",
-        "the voxel size of the data, or the mean spacing of the points", "world units",
+        "the voxel size of the data, or the mean spacing of the points", "mesh units",
         {positive, unlimited});
     add("line_width", &Style::line_width, "Width of lines, wireframes and normals.", "1.5", "pixels",
         {0.1, 1000});

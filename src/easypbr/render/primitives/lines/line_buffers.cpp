@@ -5,20 +5,13 @@
 namespace easypbr::render {
 namespace {
 
-/// Length of normals, as a part of the mesh's diagonal.
-constexpr float normal_part = 0.02f;
-
-float normal_length_of(const MeshData& mesh) {
-    return normal_part * (mesh.V.colwise().maxCoeff() - mesh.V.colwise().minCoeff()).norm();
-}
-
 std::vector<gpu::Segment> segments_of(const MeshData& mesh, gpu::LineKind kind,
-                                      std::optional<float> normal_length) {
+                                      const gpu::NormalLines& normals) {
     switch (kind) {
         case gpu::LineKind::wireframe:
             return gpu::wireframe_segments(mesh);
         case gpu::LineKind::normals:
-            return gpu::normal_segments(mesh, normal_length ? *normal_length : normal_length_of(mesh));
+            return gpu::normal_segments(mesh, normals);
         default:
             return gpu::edge_segments(mesh);
     }
@@ -43,24 +36,21 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
 
 }  // namespace
 
-LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind,
-                                 std::optional<float> normal_length) {
+LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals) {
     return {{mesh.V.revision(), mesh.E.revision(), mesh.F.revision(), mesh.N.revision(), mesh.C.revision(),
              mesh.UV.revision(), mesh.source_vertex.revision(), mesh.source_face.revision()},
             kind,
-            normal_length};
+            normals};
 }
 
-const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind,
-                                  std::optional<float> normal_length) {
-    return buffers_.get(key_of(mesh, kind, normal_length),
-                        [&] { return make_line_buffers(segments_of(mesh, kind, normal_length)); });
+const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals) {
+    return buffers_.get(key_of(mesh, kind, normals),
+                        [&] { return make_line_buffers(segments_of(mesh, kind, normals)); });
 }
 
 const std::vector<gpu::Segment>& LineCache::segments(const MeshData& mesh, gpu::LineKind kind,
-                                                     std::optional<float> normal_length) {
-    return segments_.get(key_of(mesh, kind, normal_length),
-                         [&] { return segments_of(mesh, kind, normal_length); });
+                                                     const gpu::NormalLines& normals) {
+    return segments_.get(key_of(mesh, kind, normals), [&] { return segments_of(mesh, kind, normals); });
 }
 
 }  // namespace easypbr::render

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -22,10 +21,10 @@ struct LineBuffers {
 /// Segments by the revisions of the arrays they were made from, on the device or in host memory.
 class LineCache {
   public:
-    /// `normal_length` is in the mesh's own units; nothing: by the size of the mesh.
-    const LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
+    /// `normals` counts for LineKind::normals alone.
+    const LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals);
     const std::vector<gpu::Segment>& segments(const MeshData& mesh, gpu::LineKind kind,
-                                              std::optional<float> normal_length);
+                                              const gpu::NormalLines& normals);
 
     /// Drops what was not asked for since the last call.
     void evict_unused() {
@@ -34,8 +33,8 @@ class LineCache {
     }
 
   private:
-    using Key = std::tuple<std::array<uint64_t, 8>, gpu::LineKind, std::optional<float>>;
-    static Key key_of(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
+    using Key = std::tuple<std::array<uint64_t, 8>, gpu::LineKind, gpu::NormalLines>;
+    static Key key_of(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals);
 
     RevisionCache<Key, LineBuffers> buffers_;
     RevisionCache<Key, std::vector<gpu::Segment>> segments_;

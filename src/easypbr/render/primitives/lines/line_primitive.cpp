@@ -21,7 +21,7 @@ const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f)
 struct Stroke {
     gpu::LineKind kind;
     std::optional<Vec3> color;  ///< linear; nothing: the data's own
-    std::optional<float> normal_length;
+    gpu::NormalLines normals;
 
     /// As the shader takes it. Lines that are the data's keep its opacity.
     Vec4 color_or_none() const {
@@ -53,7 +53,8 @@ std::vector<Stroke> strokes_of(const DrawItem& item) {
     if (style.show_wireframe && !mesh.F.empty())
         strokes.push_back({gpu::LineKind::wireframe, given_or(wireframe_color), {}});
     if (style.show_normals && !mesh.V.empty())
-        strokes.push_back({gpu::LineKind::normals, given_or(normals_color), style.normal_length});
+        strokes.push_back({gpu::LineKind::normals, given_or(normals_color),
+                           gpu::normal_lines(style.normal_length, item.object->T_world_mesh.linear())});
     return strokes;
 }
 
@@ -185,7 +186,7 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
         program.set("u_clip_from_mesh", clip_from_mesh(frame, item));
         set_style(program, item);
         for (const Stroke& stroke : strokes_of(item)) {
-            const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normal_length);
+            const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normals);
             if (buffers.count == 0) continue;
             if (reads_table(item, stroke))
                 textures_.get(item.material.base_color_texture, true).bind(table_unit);
@@ -234,7 +235,7 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
             if (reads_table(item, stroke))
                 values.set("u_table", textures_.host(item.material.base_color_texture, true));
             set_colors(values, item, stroke);
-            const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normal_length);
+            const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normals);
             native::draw_lines(values.native(transfers), region,
                                screen_lines(segments, screen_view_of(frame, item, stroke.color_or_none())),
                                area.y + area.height);
