@@ -8,9 +8,9 @@
 
 namespace easypbr {
 
-/// Memory for so many bytes, by the pool where it holds a block of up to twice that size. The system hands out pages one
-/// by one and clears each, which takes longer than most passes take to fill them. Throws std::bad_alloc. Any
-/// thread.
+/// Memory for so many bytes, by the pool where it holds a block of up to twice that size. The system hands
+/// out pages one by one and clears each, which takes longer than most passes take to fill them. Throws
+/// std::bad_alloc. Any thread.
 void* take_pooled(size_t bytes);
 /// Takes back what take_pooled() gave for as many bytes.
 void give_pooled(void* memory, size_t bytes) noexcept;
