@@ -192,8 +192,9 @@ class LayerBounds : public testing::Test {
   private:
     std::mt19937 generator_{3};
     std::vector<float> texels_ = std::vector<float>(2 * size * size);
-    std::vector<float> least_ = std::vector<float>(2 * blocks * blocks, 2.0f),
-                       largest_ = std::vector<float>(2 * blocks * blocks, -2.0f);
+    // Lanes beyond the last block are read, and not taken.
+    std::vector<float> least_ = std::vector<float>(2 * blocks * blocks + lanes - 1, 2.0f),
+                       largest_ = std::vector<float>(2 * blocks * blocks + lanes - 1, -2.0f);
 };
 
 TEST_F(LayerBounds, AreThoseOfTheBlocksAroundThePlacesThatAreNeeded) {
