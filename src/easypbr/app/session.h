@@ -82,7 +82,7 @@ class Session {
     Drawn draw_frame(const PictureOptions& options = {});
 
     /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing).
-    /// Through a lens depth is that of the pixels' own rays, all else the nearest drawn pixel's. Of surfels
+    /// Through a lens depth is that of the pixels' own rays, all else the nearest drawn pixel's. Of discs
     /// that overlap the nearest counts alone, but for ambient occlusion.
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);

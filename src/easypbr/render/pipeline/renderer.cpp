@@ -323,18 +323,18 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
     shot.sample_count = 1;
     const Frame frame = make_frame(shot, 0, resolved.camera, pipeline_.bounds_of(drawable.scene),
                                    list.reaches_beyond_vertices());
-    // Layers are of the nearest surfel, as ground truth is. Light is occluded as in pictures: by the mean of
+    // Layers are of the nearest disc, as ground truth is. Light is occluded as in pictures: by the mean of
     // those that overlap.
-    const bool has_surfels = !list.of(DrawMode::surfels).empty();
+    const bool has_discs = list.has([](const DrawItem& item) { return draws_discs(item.style.mode); });
     const bool occludes = options.occlusion && resolved.settings.ssao.enabled;
     if (!occludes) pipeline_.targets().remove_ambient_occlusion();
-    if (occludes && has_surfels) {
+    if (occludes && has_discs) {
         pipeline_.draw_surfaces(frame, list, {});
         pipeline_.occlude_surfaces(frame, list);
     }
-    const bool ids = options.ids || options.surfaces || has_surfels;
+    const bool ids = options.ids || options.surfaces || has_discs;
     pipeline_.draw_surfaces(frame, list, {.ids = ids, .nearest_alone = true});
-    if (occludes && !has_surfels) pipeline_.occlude_surfaces(frame, list);
+    if (occludes && !has_discs) pipeline_.occlude_surfaces(frame, list);
     has_layers_ = true;
     evict_unused();
     gl::flush();

@@ -28,7 +28,7 @@ struct DrawOptions {
     double time_share = 1;           ///< of a tile: its part of image.time_budget
     bool ids = false;                ///< fill the id target too
     bool layers = false;  ///< of draw(): read_layer() will be called: blended surfaces stand in it where they
-                          ///< are half opaque or more, of surfels that overlap the nearest; there is no
+                          ///< are half opaque or more, of discs that overlap the nearest; there is no
                           ///< picture
     bool occlusion = false;  ///< with `layers`: Layer::ambient_occlusion, too
     bool surfaces = false;   ///< read_surfaces() and read_layer() will be called: where the picture's last
