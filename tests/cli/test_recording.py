@@ -1,4 +1,5 @@
 """Recordings as FFmpeg and the stills see them: frame for frame."""
+import contextlib
 import json
 import os
 import resource
@@ -230,17 +231,27 @@ def test_a_program_that_does_not_work_is_named(without_module, box, tmp_path):
     assert f"{tmp_path}/ffmpeg does not work: it lists no encoders" in done.stderr
 
 
+@contextlib.contextmanager
+def running_recording(command, environment, growing):
+    """Runs a recording until its file has grown, and kills it for good at the end of the block."""
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
+    try:
+        deadline = time.monotonic() + 60
+        while not growing.exists() or growing.stat().st_size < 60_000:
+            assert time.monotonic() < deadline and process.poll() is None
+            time.sleep(0.02)
+        yield
+        assert process.poll() is None
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+
+
 def killed_recording(environment, box, folder, name, written=None):
     """Kills a recording for good while it runs; `written`: the file that grows."""
-    growing = folder / (written or name)
     command = [BINARY, "render", box, "--turntable", "2000", "-o", folder / name, *LOOK]
-    process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
-    deadline = time.monotonic() + 60
-    while not growing.exists() or growing.stat().st_size < 60_000:
-        assert time.monotonic() < deadline and process.poll() is None
-        time.sleep(0.02)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
+    with running_recording(command, environment, folder / (written or name)):
+        pass
 
 
 @pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
@@ -254,6 +265,39 @@ def test_a_killed_recording_leaves_the_video_before(environment, box, tmp_path):
     killed_recording(environment, box, tmp_path, "a.mp4", "a.part.mp4")
     assert (tmp_path / "a.mp4").read_bytes() == b"the old one"
     assert 20 < int(probe(tmp_path / "a.part.mp4")["nb_read_frames"]) < 2000
+
+
+@pytest.mark.parametrize("old", [False, True])
+def test_a_program_of_its_own_records_meanwhile(easypbr, environment, box, tmp_path, old):
+    """A new video that another process records is refused; one that is to be replaced has a file for each process."""
+    part = tmp_path / ("a.part.mp4" if old else "a.mp4")
+    if old:
+        (tmp_path / "a.mp4").write_bytes(b"the old one")
+    command = [BINARY, "render", box, "--turntable", "20000", "-o", tmp_path / "a.mp4", *LOOK]
+    with running_recording(command, environment, part):
+        done = easypbr("render", box, "--turntable", "5", "-o", "a.mp4", *LOOK, code=0 if old else 1)
+        assert old or "cannot write a.mp4: it is being recorded" in done.stderr
+    if old:
+        assert probe(tmp_path / "a.mp4")["nb_read_frames"] == "5"
+    assert 20 < int(probe(part)["nb_read_frames"]) < 20000
+    # Nothing remains of the process that was killed but its file, which stays.
+    left = part.read_bytes()
+    easypbr("render", box, "--turntable", "3", "-o", "a.mp4", *LOOK)
+    assert probe(tmp_path / "a.mp4")["nb_read_frames"] == "3"
+    assert not old or part.read_bytes() == left
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted({"a.mp4", part.name})
+
+
+def test_the_program_writes_a_file_of_its_own(without_module, box, tmp_path):
+    """A file of each name that the recording would take stays, and none is written through a link."""
+    part, link, target = (tmp_path / name for name in ("a.part.mp4", "a.part-2.mp4", "target"))
+    for path in (tmp_path / "a.mp4", part, target):
+        path.write_bytes(b"mine")
+    link.symlink_to("target")
+    render_alone(without_module, tmp_path, box, "--turntable", "4", "-o", "a.mp4", *LOOK)
+    assert probe(tmp_path / "a.mp4")["nb_read_frames"] == "4"
+    assert part.read_bytes() == target.read_bytes() == b"mine" and link.is_symlink()
+    assert not (tmp_path / "a.part-3.mp4").exists()
 
 
 def test_a_full_disk_is_an_error(environment, box, tmp_path):

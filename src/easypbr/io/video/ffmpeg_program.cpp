@@ -105,7 +105,7 @@ void add_encoder(Arguments& arguments, const std::string& encoder, double fps) {
     if (options.empty()) add_to(arguments, {"-q:v", fmt::format("{}", fixed_quantiser)});
 }
 
-/// What the program is told: pictures of this size come through its standard input.
+/// What the program is told: pictures of this size come through its standard input. `path`: absolute.
 Arguments arguments_for(const fs::path& path, const Vec2i& size, double fps, const std::string& encoder,
                         const std::string& pixels) {
     Arguments arguments{"-hide_banner", "-loglevel", "error",    "-nostats",
@@ -137,29 +137,19 @@ std::pair<Descriptor, Descriptor> connection() {
     return {std::move(ours), std::move(theirs)};
 }
 
-/// Opens the file as it will be written, so that an error is known before the first picture.
-void create(const fs::path& path) {
-    const Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
-    if (file.get() < 0)
-        throw FileError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
-}
-
 class ProgramVideo final : public VideoWriter {
   public:
-    ProgramVideo(const fs::path& program, const fs::path& path, const VideoOptions& options)
-        : path_(path), size_(options.size), padded_(options.size) {
-        check_video_options(path, options);
-        const std::string encoder = choose_encoder(path, options.codec, encoders_of_program(program));
+    ProgramVideo(const fs::path& program, VideoFile file, const VideoOptions& options)
+        : file_(std::move(file)), path_(file_.name()), size_(options.size), padded_(options.size) {
+        check_video_options(path_, options);
+        const std::string encoder = choose_encoder(path_, options.codec, encoders_of_program(program));
         const std::string pixels = encoder == "gif" ? "" : pixel_format_of(program, encoder);
         // Planes of half the size need an even one.
         if (pixels == "yuv420p" || pixels == "yuvj420p") padded_ += Vec2i(size_.x() & 1, size_.y() & 1);
-        create(path);
-        whole_or_none([&] {
-            auto [ours, theirs] = connection();
-            feed_ = std::move(ours);
-            child_.emplace(program, arguments_for(path, padded_, options.fps, encoder, pixels),
-                           ChildStreams{.input = theirs.get(), .errors = errors_.descriptor()});
-        });
+        auto [ours, theirs] = connection();
+        feed_ = std::move(ours);
+        child_.emplace(program, arguments_for(file_.path(), padded_, options.fps, encoder, pixels),
+                       ChildStreams{.input = theirs.get(), .errors = errors_.descriptor()});
     }
 
     ~ProgramVideo() override {
@@ -183,7 +173,10 @@ class ProgramVideo final : public VideoWriter {
         if (finished_) return;
         finished_ = true;
         if (is_empty_) return remove();
-        whole_or_none([&] { require_end(); });
+        whole_or_none([&] {
+            require_end();
+            file_.keep();
+        });
     }
 
   private:
@@ -201,8 +194,7 @@ class ProgramVideo final : public VideoWriter {
 
     void remove() {
         child_.reset();
-        std::error_code ignored;
-        if (fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
+        file_.remove();
     }
 
     /// The last pixel is sent twice where the sides are padded.
@@ -236,7 +228,8 @@ class ProgramVideo final : public VideoWriter {
         throw FileError(fmt::format("cannot write {}: {}", path_.string(), reason));
     }
 
-    fs::path path_;
+    VideoFile file_;
+    fs::path path_;  ///< the file's name in messages
     Vec2i size_, padded_;
     SharedMemory errors_;
     Descriptor feed_;
@@ -277,9 +270,9 @@ std::vector<std::string> encoders_of_program(const fs::path& program) {
     return names;
 }
 
-std::unique_ptr<VideoWriter> open_video_by_program(const fs::path& program, const fs::path& path,
+std::unique_ptr<VideoWriter> open_video_by_program(const fs::path& program, VideoFile file,
                                                    const VideoOptions& options) {
-    return std::make_unique<ProgramVideo>(program, path, options);
+    return std::make_unique<ProgramVideo>(program, std::move(file), options);
 }
 
 }  // namespace easypbr::io

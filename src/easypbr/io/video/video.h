@@ -25,9 +25,10 @@ class VideoWriter {
     /// Appends a u8 picture of the video's size with 4 channels, row 0 on top; alpha is left out. Throws
     /// ArgumentError for another picture, FileError when the file cannot be written.
     virtual void add(const Image& picture) = 0;
-    /// Writes what is still in the encoder and closes the file; add() may not follow. Throws FileError. A
-    /// writer that is destroyed before is finished as far as it can be. A file that cannot be written to its
-    /// end, or has no picture, is removed, by add() too.
+    /// Writes what is still in the encoder and closes the file; add() may not follow. Throws FileError, also
+    /// when another file has taken the place of this one, which stays as it is. A writer that is destroyed
+    /// before is finished as far as it can be. A file that cannot be written to its end, or has no picture,
+    /// is removed, by add() too.
     virtual void finish() = 0;
 };
 
@@ -38,8 +39,9 @@ class VideoWriter {
 /// libeasypbr.so and then where the system searches) or, where that or FFmpeg's libraries are missing, by the
 /// program ffmpeg, which finishes the file when this process is killed. Throws FormatError when both are
 /// missing, ArgumentError for a codec that is not there (naming those that are), a size or a rate out of
-/// range, FileError when the file cannot be written. A file that is there already is replaced by finish(),
-/// when the video is whole: until then the video is written beside it, "clip.part.mp4" beside "clip.mp4".
+/// range, FileError when the file cannot be written, or another video is being written into it. A file that
+/// is there already is replaced by finish(), when the video is whole: until then the video is written into a
+/// new file beside it, "clip.part.mp4" beside "clip.mp4", "clip.part-2.mp4" where that is there, and so on.
 std::unique_ptr<VideoWriter> open_video(const std::filesystem::path& path, const VideoOptions& options);
 
 /// Throws as open_video() does for a codec or an FFmpeg that is missing; writes nothing.

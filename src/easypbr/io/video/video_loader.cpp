@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -11,6 +12,7 @@
 #include "easypbr/io/video/ffmpeg/module.h"
 #include "easypbr/io/video/ffmpeg_program.h"
 #include "easypbr/io/video/video.h"
+#include "easypbr/io/video/video_file.h"
 #include "easypbr/io/video/video_stream.h"
 
 namespace easypbr::io {
@@ -52,25 +54,21 @@ fs::path require_program(const fs::path& path) {
                                   how_to_get()));
 }
 
-std::unique_ptr<VideoWriter> open_at(const fs::path& path, const VideoOptions& options) {
-    if (!ffmpeg_module().works()) return open_video_by_program(require_program(path), path, options);
+std::unique_ptr<VideoWriter> open_in(VideoFile file, const VideoOptions& options) {
+    if (!ffmpeg_module().works()) {
+        const fs::path program = require_program(file.name());
+        return open_video_by_program(program, std::move(file), options);
+    }
     std::unique_ptr<VideoWriter> writer;
-    ffmpeg_module().open(path, options, writer);
+    ffmpeg_module().open(std::move(file), options, writer);
     return writer;
-}
-
-/// "clip.part.mp4" beside "clip.mp4": by its extension a video can be played.
-fs::path beside_of(const fs::path& target) {
-    fs::path part = target;
-    part.replace_extension(".part" + target.extension().string());
-    return part;
 }
 
 /// A video that takes the place of a file when it is whole.
 class ReplacingVideo final : public VideoWriter {
   public:
-    ReplacingVideo(const fs::path& target, const VideoOptions& options)
-        : target_(target), part_(beside_of(target)), video_(open_at(part_, options)) {}
+    ReplacingVideo(const fs::path& target, VideoFile part, const VideoOptions& options)
+        : target_(target), part_(part.path()), video_(open_in(std::move(part), options)) {}
 
     ~ReplacingVideo() override {
         try {
@@ -87,7 +85,12 @@ class ReplacingVideo final : public VideoWriter {
         finished_ = true;
         video_->finish();
         // What failed, or has no picture, was removed.
-        if (fs::exists(part_)) replace_file(target_, part_);
+        if (!fs::exists(part_)) return;
+        if (is_being_recorded(target_))
+            throw FileError(
+                fmt::format("cannot write {}: it is being recorded meanwhile; this recording is {}",
+                            target_.string(), part_.string()));
+        replace_file(target_, part_);
     }
 
   private:
@@ -114,10 +117,12 @@ void check_video(const fs::path& path, const std::string& codec) {
 }
 
 std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions& options) {
+    check_writable(path);
+    if (auto file = VideoFile::create(path)) return open_in(std::move(*file), options);
     const fs::path target = real_target(path);
-    std::error_code ignored;
-    if (fs::is_regular_file(target, ignored)) return std::make_unique<ReplacingVideo>(target, options);
-    return open_at(path, options);
+    if (is_being_recorded(target))
+        throw FileError(fmt::format("cannot write {}: it is being recorded", path.string()));
+    return std::make_unique<ReplacingVideo>(target, VideoFile::create_part(target), options);
 }
 
 std::unique_ptr<VideoStream> open_video_stream(const VideoStreamOptions& options) {

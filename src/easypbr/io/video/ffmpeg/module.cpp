@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -71,17 +72,19 @@ AVPixelFormat pixel_format_of(const AVCodec& encoder) {
 
 class FfmpegVideo final : public VideoWriter {
   public:
-    FfmpegVideo(const fs::path& path, const VideoOptions& options) : path_(path), size_(options.size) {
-        check_video_options(path, options);
+    FfmpegVideo(VideoFile file, const VideoOptions& options)
+        : file_(std::move(file)), path_(file_.name()), size_(options.size) {
+        check_video_options(path_, options);
         silence_ffmpeg();
-        const AVCodec& encoder = encoder_for(path, options.codec);
+        const AVCodec& encoder = encoder_for(path_, options.codec);
         AVFormatContext* raw = nullptr;
-        require_written(avformat_alloc_output_context2(&raw, nullptr, container_of(path).name, path.c_str()),
-                        path);
+        require_written(
+            avformat_alloc_output_context2(&raw, nullptr, container_of(path_).name, file_.path().c_str()),
+            path_);
         output_.reset(raw);
         open_encoder(encoder, options.fps);
         make_frame();
-        whole_or_none([&] { begin_file(); });
+        begin_file();
     }
 
     ~FfmpegVideo() override {
@@ -113,10 +116,11 @@ class FfmpegVideo final : public VideoWriter {
             require_written(av_write_trailer(output_.get()), path_);
             require_written(output_->pb->error, path_);
             require_written(avio_closep(&output_->pb), path_);
+            file_.keep();
         });
         if (!is_fragmented()) return;
         try {
-            index_first(path_);
+            index_first(file_.path());
         } catch (const std::exception& error) {
             log_warning(fmt::format("{} stays a fragmented MP4: {}", path_.string(), error.what()));
         }
@@ -137,8 +141,7 @@ class FfmpegVideo final : public VideoWriter {
 
     void remove() {
         output_.reset();
-        std::error_code ignored;
-        if (is_opened_ && fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
+        file_.remove();
     }
 
     bool is_fragmented() const {
@@ -199,8 +202,7 @@ class FfmpegVideo final : public VideoWriter {
         require_written(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), path_);
         stream_->time_base = codec_->time_base;
         stream_->avg_frame_rate = codec_->framerate;
-        require_written(avio_open(&output_->pb, path_.c_str(), AVIO_FLAG_WRITE), path_);
-        is_opened_ = true;
+        require_written(avio_open(&output_->pb, file_.path().c_str(), AVIO_FLAG_WRITE), path_);
         output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
         AVDictionary* options = nullptr;
         if (is_fragmented())
@@ -230,7 +232,8 @@ class FfmpegVideo final : public VideoWriter {
         std::ranges::copy(palette, reinterpret_cast<uint32_t*>(frame_->data[1]));
     }
 
-    fs::path path_;
+    VideoFile file_;
+    fs::path path_;  ///< the file's name in messages
     Vec2i size_;
     Output output_;
     Codec codec_;
@@ -239,7 +242,7 @@ class FfmpegVideo final : public VideoWriter {
     std::optional<ToPlanes> planes_;
     AVStream* stream_ = nullptr;
     int64_t next_ = 0;
-    bool is_opened_ = false, finished_ = false;
+    bool finished_ = false;
 };
 
 }  // namespace
@@ -247,9 +250,9 @@ class FfmpegVideo final : public VideoWriter {
 
 using namespace easypbr;
 
-void easypbr_ffmpeg_open(const std::filesystem::path& path, const io::VideoOptions& options,
+void easypbr_ffmpeg_open(io::VideoFile&& file, const io::VideoOptions& options,
                          std::unique_ptr<io::VideoWriter>& out) {
-    out = std::make_unique<io::FfmpegVideo>(path, options);
+    out = std::make_unique<io::FfmpegVideo>(std::move(file), options);
 }
 
 void easypbr_ffmpeg_check(const std::filesystem::path& path, const std::string& codec) {
