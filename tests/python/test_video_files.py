@@ -94,6 +94,31 @@ def test_a_recording_leaves_a_file_that_took_its_place(recorders, tmp_path, name
     assert (frames_of(file), frames_of(tmp_path / part)) == (2, 1)
 
 
+@pytest.mark.parametrize("old", [False, True])
+@pytest.mark.parametrize("name", ["a.mp4", "a.mov"])
+def test_indexing_a_video_writes_no_other_file(recorder, tmp_path, name, old):
+    """A fragmented MP4 is made an ordinary one by way of a new file, which nothing else can have the name of."""
+    file, part, target = tmp_path / name, tmp_path / f"{name}.part", tmp_path / "target"
+    link = tmp_path / (name.replace(".", ".part.") + ".part")
+    for path in (part, target, *([file] if old else [])):
+        path.write_bytes(b"mine")
+    link.symlink_to("target")
+    with recorder.start(file):
+        for _ in range(3):
+            recorder.add_frame()
+    # ISO/IEC 14496-12: "moof" begins a fragment; an ordinary file has none.
+    assert frames_of(file) == 3 and b"moof" not in file.read_bytes()
+    assert names_in(tmp_path) == sorted([name, part.name, link.name, "target"])
+    assert part.read_bytes() == target.read_bytes() == b"mine" and link.is_symlink()
+
+
+def test_a_new_video_has_the_permissions_of_new_files(recorder, tmp_path):
+    (tmp_path / "new").touch()
+    with recorder.start(tmp_path / "a.mp4"):
+        recorder.add_frame()
+    assert (tmp_path / "a.mp4").stat().st_mode == (tmp_path / "new").stat().st_mode
+
+
 @pytest.mark.parametrize("name", ["a.mp4", "a.gif"])
 def test_files_beside_a_recording_stay(recorder, tmp_path, name):
     """A file, a link to one and a link to none, each with the name that the recording would take next."""

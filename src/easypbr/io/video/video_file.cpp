@@ -81,6 +81,14 @@ VideoFile VideoFile::create_part(const fs::path& target) {
     }
 }
 
+VideoFile VideoFile::create_temporary(const fs::path& target) {
+    for (;;) {
+        const fs::path path = fs::absolute(target).parent_path() / temporary_name();
+        // The name is there where it was left by a process that was killed, or that of another container.
+        if (auto file = create_at(target, path, 0600)) return std::move(*file);
+    }
+}
+
 VideoFile::~VideoFile() {
     remove();
 }
@@ -92,6 +100,12 @@ bool VideoFile::is_in_place() const {
            own.st_dev == there.st_dev && own.st_ino == there.st_ino;
 }
 
+void VideoFile::require_in_place() const {
+    if (!is_in_place())
+        throw FileError(fmt::format("cannot write {}: the file was removed or replaced while it was written",
+                                    name_.string()));
+}
+
 void VideoFile::release() {
     // A child process that was forked meanwhile has the descriptor too, which would keep the lock.
     set_lock(file_.get(), F_UNLCK);
@@ -99,9 +113,13 @@ void VideoFile::release() {
 }
 
 void VideoFile::keep() {
-    if (!is_in_place())
-        throw FileError(fmt::format("cannot write {}: the file was removed or replaced while it was written",
-                                    name_.string()));
+    require_in_place();
+    release();
+}
+
+void VideoFile::replace(const fs::path& target) {
+    require_in_place();
+    replace_file(target, path_);
     release();
 }
 

@@ -20,6 +20,8 @@ class VideoFile {
     /// "clip.part-2.mp4" where that is there already. Who may not read the target may not read it either.
     /// Throws FileError.
     static VideoFile create_part(const fs::path& target);
+    /// A file of a temporary name beside a target, for its owner alone. Throws FileError.
+    static VideoFile create_temporary(const fs::path& target);
 
     ~VideoFile();
     VideoFile(VideoFile&&) noexcept = default;
@@ -33,6 +35,8 @@ class VideoFile {
     /// To be called when the video is whole: the file stays, and is not locked any more. Throws FileError
     /// when it was removed, or another is in its place.
     void keep();
+    /// As keep(), in the place of the target, whose owner and permissions it takes. Throws FileError.
+    void replace(const fs::path& target);
     /// Removes the file, but no other that has taken its place.
     void remove();
 
@@ -40,6 +44,7 @@ class VideoFile {
     VideoFile(fs::path name, fs::path path, Descriptor file);
     static std::optional<VideoFile> create_at(const fs::path& name, const fs::path& path, mode_t mode);
     bool is_in_place() const;
+    void require_in_place() const;
     void release();
 
     fs::path name_, path_;

@@ -1,8 +1,7 @@
 #include "easypbr/io/video/ffmpeg/remux.h"
 
-#include <system_error>
-
 #include "easypbr/io/video/ffmpeg/handles.h"
+#include "easypbr/io/video/video_file.h"
 
 namespace easypbr::io {
 namespace {
@@ -51,16 +50,9 @@ void copy_packets(AVFormatContext& input, const fs::path& path, const fs::path& 
 }  // namespace
 
 void index_first(const fs::path& path) {
-    fs::path beside = path;
-    beside += ".part";
-    try {
-        copy_packets(*open_input(path), path, beside);
-        fs::rename(beside, path);
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove(beside, ignored);
-        throw;
-    }
+    VideoFile ordinary = VideoFile::create_temporary(path);
+    copy_packets(*open_input(path), path, ordinary.path());
+    ordinary.replace(path);
 }
 
 }  // namespace easypbr::io
