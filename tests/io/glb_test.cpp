@@ -245,4 +245,30 @@ TEST(Glb, ColorsOfVerticesAreWrittenBesideWhite) {
     EXPECT_TRUE(first_child(round_trip(Mesh(plain)).mesh).materials.at(0).has_default_color());
 }
 
+// Points and lines have one, but for the default, which draws lines dark.
+TEST(Glb, MaterialsOfPointsAndLinesAreKept) {
+    for (const bool lines : {false, true}) {
+        MeshData data = square();
+        data.F = {};
+        data.C = {};
+        Array2i::Dense E(1, 2);
+        E << 0, 2;
+        if (lines) data.E = E;
+        Material red;
+        red.name = "red";
+        red.base_color = Vec3(1, 0, 0);
+        red.opacity = 0.5f;
+        data.materials = {red};
+        const std::vector<Material> found = first_child(round_trip(Mesh(data)).mesh).materials;
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_EQ(found[0].name, "red");
+        EXPECT_EQ(found[0].base_color, Vec3(1, 0, 0));
+        EXPECT_EQ(found[0].opacity, 0.5f);
+        data.materials = {Material()};
+        const Mesh plain = round_trip(Mesh(data)).mesh;
+        EXPECT_TRUE(first_child(plain).materials.empty() ||
+                    first_child(plain).materials[0].has_default_color());
+    }
+}
+
 }  // namespace easypbr::glb_test

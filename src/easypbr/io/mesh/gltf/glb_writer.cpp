@@ -92,8 +92,12 @@ class GlbBuilder {
             const size_t indices = add_indices(data.E.data(), size_t(data.E.size()));
             primitives.push_back(
                 {{"attributes", attributes}, {"indices", indices}, {"mode", int(mode_lines)}});
+            if (data.F.empty()) add_material(data, primitives.back());
         }
-        if (primitives.empty()) primitives.push_back(points(data, std::move(attributes)));
+        if (primitives.empty()) {
+            primitives.push_back(points(data, std::move(attributes)));
+            if (data.splats.empty()) add_material(data, primitives.back());
+        }
         content_.json["meshes"].push_back({{"name", data.name}, {"primitives", std::move(primitives)}});
         return content_.json["meshes"].size() - 1;
     }
@@ -123,15 +127,22 @@ class GlbBuilder {
             }
     }
 
+    size_t material_index(const MeshData& data, Material material) {
+        if (!data.C.empty() && material.has_default_color()) material.base_color.setOnes();
+        return materials_.add(material, has_transparent_colors(data.C));
+    }
+
+    /// Of points and lines; the default, which draws lines dark, is none.
+    void add_material(const MeshData& data, OrderedJson& primitive) {
+        if (!data.materials.empty() && data.materials[0] != Material())
+            primitive["material"] = material_index(data, data.materials[0]);
+    }
+
     void add_parts(const MeshData& data, const OrderedJson& attributes, OrderedJson& primitives) {
         std::vector<size_t> materials;
-        const bool transparent = has_transparent_colors(data.C);
         std::vector<Material> given = data.materials;
         if (given.empty()) given.emplace_back();
-        for (Material& material : given) {
-            if (!data.C.empty() && material.has_default_color()) material.base_color.setOnes();
-            materials.push_back(materials_.add(material, transparent));
-        }
+        for (const Material& material : given) materials.push_back(material_index(data, material));
         std::vector<MeshPart> parts = data.parts;
         if (parts.empty()) parts.push_back({"", 0, int(data.F.rows()), 0});
         for (const MeshPart& part : parts) {

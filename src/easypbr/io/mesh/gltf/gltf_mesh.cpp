@@ -72,6 +72,8 @@ class MeshBuilder {
             splats.name = fmt::format("splats {}", out_.children.size());
             out_.children.emplace_back(std::move(splats));
         }
+        // Points and lines have one material.
+        if (out_.materials.empty() && material_without_faces_) material_index(material_without_faces_);
         merge_vertices();
         out_.F = Array3i(Eigen::Map<const Array3i::Dense>(faces_.data(), Eigen::Index(faces_.size() / 3), 3));
         if (!edges_.empty())
@@ -177,6 +179,7 @@ class MeshBuilder {
                                  *accessor));
         const size_t count = accessor ? indices.size() : size_t(block.V.rows());
         const auto index = [&](size_t i) { return accessor ? int32_t(indices[i]) : int32_t(i); };
+        if (mode < Mode::triangles && !material_without_faces_) material_without_faces_ = material;
         if (mode >= Mode::triangles)
             add_part(triangle_corners(mode, count, index), material, block);
         else if (mode != Mode::points)
@@ -354,6 +357,7 @@ class MeshBuilder {
     std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;
     std::vector<std::optional<size_t>> sources_;  ///< of out_.materials
+    std::optional<size_t> material_without_faces_;  ///< the first of points and lines
     Eigen::Index vertex_count_ = 0;
     std::vector<int32_t> faces_, edges_;
     Array3i flat_F_;  ///< with vertices of their own, as they have no normals in the file
