@@ -44,6 +44,7 @@ vec3 F_schlick(float v_dot_h, vec3 f0) {
 struct Energy {
     vec3 single;    // reflected after one bounce: F0 A + B
     vec3 multiple;  // reflected after more bounces
+    vec3 f0;        // by which single is brought to both: see compensation()
     float e;        // directional albedo at F = 1
 };
 
@@ -51,6 +52,7 @@ Energy surface_energy(vec3 f0, vec2 dfg) {
     Energy energy;
     energy.e = dfg.x + dfg.y;
     energy.single = f0 * dfg.x + dfg.y;
+    energy.f0 = f0;
     float missing = 1.0 - energy.e;
     vec3 f_average = f0 + (1.0 - f0) / 21.0;
     energy.multiple = vec3(0.0);
@@ -58,3 +60,16 @@ Energy surface_energy(vec3 f0, vec2 dfg) {
         energy.multiple = missing * energy.single * f_average / (1.0 - f_average * missing);
     return energy;
 }
+
+// A dielectric beside a metal, whose part of the surface `metallic` is: their BRDFs are mixed (glTF 2.0, Appendix B).
+Energy mixed_energy(Energy dielectric, Energy metal, float metallic) {
+    Energy energy;
+    energy.e = metal.e;
+    energy.single = mix(dielectric.single, metal.single, metallic);
+    energy.multiple = mix(dielectric.multiple, metal.multiple, metallic);
+    energy.f0 = mix(dielectric.single * dielectric.f0, metal.single * metal.f0, metallic) / max(energy.single, 1e-6);
+    return energy;
+}
+
+// Light after one bounce times this is that after all (Turquin 2019).
+vec3 compensation(vec3 f0, float e) { return 1.0 + f0 * (1.0 / e - 1.0); }

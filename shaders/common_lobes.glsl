@@ -14,6 +14,7 @@ Energy surface_energy(vec3 f0, vec3 f90, vec2 dfg) {
     Energy energy;
     energy.e = dfg.x + dfg.y;
     energy.single = f0 * dfg.x + f90 * dfg.y;
+    energy.f0 = f0;
     float missing = 1.0 - energy.e;
     vec3 f_average = f0 + (f90 - f0) / 21.0;
     energy.multiple = vec3(0.0);

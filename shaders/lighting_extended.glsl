@@ -48,16 +48,19 @@ void prepare_extended(inout Surface s, vec3 albedo, float metallic) {
         roughness = sqrt(sqrt(dot(alpha, alpha) * 0.5));
     }
     vec2 dfg = dfg_at(s.n_dot_v, roughness);
-    s.energy = surface_energy(s.f0, s.f90, dfg);
+    Energy dielectric = surface_energy(e.f0, vec3(e.f90), dfg);
+    s.energy = mixed_energy(dielectric, surface_energy(albedo, dfg), metallic);
     if (has_iridescence) {
         s.film = e.iridescence > 0.0 ? F_film(min(s.n_dot_v, 1.0), e.film_ior, e.film_thickness, s.f0) : s.f0;
         Energy film = surface_energy(s.film, s.film, dfg);
         s.energy.single = mix(s.energy.single, film.single, e.iridescence);
         s.energy.multiple = mix(s.energy.multiple, film.multiple, e.iridescence);
+        dielectric.single = mix(dielectric.single, film.single, e.iridescence);
+        dielectric.multiple = mix(dielectric.multiple, film.multiple, e.iridescence);
     }
     // A tinted reflection must not tint what is below with its complement (KHR_materials_specular).
-    vec3 dielectric = (1.0 - metallic) * (e.f0 * dfg.x + e.f90 * dfg.y);
-    vec3 below = 1.0 - s.energy.single - s.energy.multiple - (max_channel(dielectric) - dielectric);
+    vec3 tinted = e.f0 * dfg.x + e.f90 * dfg.y;
+    vec3 below = 1.0 - dielectric.single - dielectric.multiple - (max_channel(tinted) - tinted);
     vec3 refracted = albedo * (1.0 - metallic) * max(below, 0.0);
     s.diffuse = refracted * (1.0 - e.transmission);
     s.through = refracted * e.transmission;
@@ -101,13 +104,13 @@ vec3 scattered_by_base(vec3 l, vec3 h, float n_dot_l, Surface s) {
     Extension e = s.extension;
     float n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0), v_dot_h = clamp(dot(s.view, h), 0.0, 1.0);
     vec3 fresnel = F_schlick90(v_dot_h, s.f0, s.f90);
-    vec3 compensated = s.f0;
+    vec3 compensated = s.energy.f0;
     if (has_iridescence) {
         fresnel = e.iridescence > 0.0 ? mix(fresnel, F_film(v_dot_h, e.film_ior, e.film_thickness, s.f0), e.iridescence) : fresnel;
         compensated = mix(compensated, s.film, e.iridescence);
     }
     vec3 specular = lobe_of(l, h, n_dot_h, max(n_dot_l, 1e-5), s) * fresnel;
-    if (has_multiple_scattering) specular *= 1.0 + compensated * (1.0 / s.energy.e - 1.0);
+    if (has_multiple_scattering) specular *= compensation(compensated, s.energy.e);
     return n_dot_l * (s.diffuse / pi + specular);
 }
 

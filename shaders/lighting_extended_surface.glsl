@@ -43,11 +43,11 @@ vec3 area_scattered(Light light, Surface s) {
         vec2 alpha = anisotropic_alpha(s, s.alpha);
         roughness = sqrt(sqrt(dot(alpha, alpha) * 0.5));
     }
-    vec3 compensated = s.f0;
+    vec3 compensated = s.energy.f0;
     if (has_iridescence) compensated = mix(compensated, s.film, e.iridescence);
     AreaLobe lobe = lobe_around(s.normal, s.view, ltc_at(s.n_dot_v, roughness));
     vec3 result = s.energy.single * area_form(lobe, light, s.position);
-    if (has_multiple_scattering) result *= 1.0 + compensated * (1.0 / s.energy.e - 1.0);
+    if (has_multiple_scattering) result *= compensation(compensated, s.energy.e);
     result += s.diffuse * matt;
     if (has_transmission) result += area_transmitted(light, s);
     if (has_sheen) result = result * s.sheen_keep + e.sheen_color * (min(s.sheen_albedo, 1.0) * matt);

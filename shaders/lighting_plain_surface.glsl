@@ -8,7 +8,7 @@
 vec3 area_scattered(Light light, Surface s) {
     AreaLobe lobe = lobe_around(s.normal, s.view, ltc_at(s.n_dot_v, s.roughness));
     vec3 specular = s.energy.single * area_form(lobe, light, s.position);
-    if (has_multiple_scattering) specular *= 1.0 + s.f0 * (1.0 / s.energy.e - 1.0);
+    if (has_multiple_scattering) specular *= compensation(s.energy.f0, s.energy.e);
     return specular + s.diffuse * area_irradiance(light, s.position, s.normal);
 }
 

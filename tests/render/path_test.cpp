@@ -56,7 +56,7 @@ Vec3 mean_of(const Image& image) {
 // What reflects all of an even sky shows it. 0.005: roundings of the table of directional albedos, and of the
 // roughness to 8 bits; without noise, for all directions that a path may take bring as much.
 TEST(Paths, WhiteFurnace) {
-    for (const float metallic : {0.0f, 1.0f})
+    for (const float metallic : {0.0f, 0.5f, 1.0f})
         for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
             Scene scene;
             scene.show(ball(surface(1, metallic, roughness)), "ball");
