@@ -230,5 +230,29 @@ TEST(PathSurfaces, VerticesOnFacesCastNothing) {
     }
 }
 
+// A pane from black to white lets through as much of a lamp's light as is between them, in linear light: the
+// camera looks at x = 0.05 of -1 to 1, past the pane, where 0.52 of it is left, and 0.96 of that at its face.
+// The floor sends the half back. Codes of sRGB in the middle would be 0.24 of the light.
+TEST(PathSurfaces, PanesTintLampsBetweenVerticesByLight) {
+    Material glass = matt(1);
+    glass.transmission = 1;
+    glass.roughness = 0;
+    Mesh pane = facing_square(1, glass);
+    ArrayXf::Dense C(4, 3);
+    for (int i = 0; i < 4; ++i) C.row(i).setConstant((pane.V()(i, 0) + 1) / 2);
+    pane.set_C(ArrayXf(C));
+    pane.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 1)));
+    Scene scene;
+    scene.show(facing_square(1, matt(0.5f)), "floor");
+    scene.show(pane, "pane");
+    shine(scene, Vec3(0, 0, -1));
+    app::Session session = path_session(scene, 16);
+    session.settings().path.bounces = 0;
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(0, -4, 1), 20);
+    const double x = 4.12 * std::tan(10 * pi / 180) / 16;
+    EXPECT_NEAR(render_linear(session, 16).at<float>(8, 8)[0], 0.5 * 0.96 * (1 + x) / 2, 0.005);
+}
+
 }  // namespace
 }  // namespace easypbr::path_surfaces_test

@@ -77,13 +77,16 @@ bool is_face(const DrawItem& item) {
 Vec4 vertex_color(const DrawItem& item, int element, float u, float v) {
     const MeshData& mesh = item.mesh();
     if (!item.with_colors || mesh.C.empty()) return Vec4::Ones();
-    Eigen::VectorXf c;
-    if (is_face(item))
-        c = interpolated(mesh.C, mesh.F, element, u, v);
-    else
-        c = mesh.C.row(std::min<Eigen::Index>(element, mesh.C.rows() - 1));
-    const Vec3 linear = linear_from_srgb(Vec3(c.head<3>().cwiseMax(0.0f).cwiseMin(1.0f)));
-    return {linear.x(), linear.y(), linear.z(), c.size() > 3 ? c(3) : 1.0f};
+    const auto of_vertex = [&](Eigen::Index vertex) {
+        const Vec3 code = mesh.C.row(vertex).head<3>().cwiseMax(0.0f).cwiseMin(1.0f).transpose();
+        Vec4 color;
+        color << linear_from_srgb(code), (mesh.C.cols() > 3 ? mesh.C(vertex, 3) : 1.0f);
+        return color;
+    };
+    if (!is_face(item)) return of_vertex(std::min<Eigen::Index>(element, mesh.C.rows() - 1));
+    // Between vertices light is mixed, not its codes.
+    const auto of_corner = [&](int corner) { return of_vertex(mesh.F(element, corner)); };
+    return (1 - u - v) * of_corner(0) + u * of_corner(1) + v * of_corner(2);
 }
 
 Vec2 uv_at(const DrawItem& item, int element, float u, float v) {

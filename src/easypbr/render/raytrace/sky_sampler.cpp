@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raytrace/sky_place.h"
@@ -48,17 +49,34 @@ void SkySampler::prepare(const Environment& environment, const Mat3& R_env_world
     hash_ = hash;
 }
 
-const float* SkySampler::texel_at(const Vec2& place) const {
+SkySampler::Texels SkySampler::texels_at(const Vec2& place) const {
     const Image& image = environment_.image();
-    const Vec2i at = pixel_at(place, {image.width(), image.height()});
-    return image.at<float>(at.x(), at.y());
+    const float x = place.x() * float(image.width()) - 0.5f, y = place.y() * float(image.height()) - 0.5f;
+    const float left = std::floor(x), above = std::floor(y);
+    const int column = int(left), row = int(above);
+    const auto row_at = [&](int at) { return std::clamp(at, 0, image.height() - 1); };
+    const auto column_at = [&](int at) { return (at + image.width()) % image.width(); };
+    const int columns[2] = {column_at(column), column_at(column + 1)},
+              rows[2] = {row_at(row), row_at(row + 1)};
+    return {{image.at<float>(columns[0], rows[0]), image.at<float>(columns[1], rows[0]),
+             image.at<float>(columns[0], rows[1]), image.at<float>(columns[1], rows[1])},
+            x - left,
+            y - above};
+}
+
+Vec3 SkySampler::detail_at(const Vec2& place) const {
+    const Texels texels = texels_at(place);
+    const auto texel = [&](int i) { return Eigen::Map<const Vec3>(texels.at[size_t(i)]); };
+    const Vec3 above = texel(0) + texels.x * (texel(1) - texel(0)),
+               below = texel(2) + texels.x * (texel(3) - texel(2));
+    return above + texels.y * (below - above);
 }
 
 SkySampler::Sample SkySampler::seen_at(const Vec2& place, const Vec3& direction, float density) const {
     const Vec4& small = bright_.texel(place);
     const float chosen = is_sampled() ? small.w() : 0;
-    const float* texel = density < most_blurred ? small.data() : texel_at(place);
-    return {direction, intensity_ * Eigen::Map<const Vec3>(texel), chosen};
+    const Vec3 radiance = density < most_blurred ? Vec3(small.head<3>()) : detail_at(place);
+    return {direction, intensity_ * radiance, chosen};
 }
 
 SkySampler::Sample SkySampler::seen(const Vec3& direction, float density) const {
@@ -86,7 +104,10 @@ std::vector<SkySampler::Sample> SkySampler::seen(std::span<const Vec3> direction
                                 v.data());
         for (size_t i = 0; i < count; ++i) {
             __builtin_prefetch(&bright_.texel({u[i], v[i]}));
-            if (densities[begin + i] >= most_blurred) __builtin_prefetch(texel_at({u[i], v[i]}));
+            if (densities[begin + i] < most_blurred) continue;
+            const Texels texels = texels_at({u[i], v[i]});
+            __builtin_prefetch(texels.at[0]);
+            __builtin_prefetch(texels.at[2]);
         }
         for (size_t i = 0; i < count; ++i)
             samples[begin + i] = seen_at({u[i], v[i]}, directions[begin + i], densities[begin + i]);

@@ -1,6 +1,7 @@
 // Directions of the sky that its light comes from.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,7 +41,14 @@ class SkySampler {
     std::vector<Sample> seen(std::span<const Vec3> directions, std::span<const float> densities) const;
 
   private:
-    const float* texel_at(const Vec2& place) const;
+    /// What is read for a place of the map, which is filtered as the background is: linearly.
+    struct Texels {
+        std::array<const float*, 4> at;  ///< left and right, above and below
+        float x, y;                      ///< of the place between them, 0 to 1
+    };
+    Texels texels_at(const Vec2& place) const;
+    /// Radiance of the environment map itself.
+    Vec3 detail_at(const Vec2& place) const;
     Sample seen_at(const Vec2& place, const Vec3& direction, float density) const;
 
     Environment environment_;
