@@ -37,7 +37,8 @@ TEST_F(TargetTest, ReleasesHostMemory) {
     const Target large(gl::Format::rgba32f, Vec2i(256, 128));
     const size_t given = pooled_memory().given;
     large.write(large.whole());
-    EXPECT_EQ(pooled_memory().given, given + size_t{256} * 128 * 16);
+    // Of the pool, which may give a larger block.
+    EXPECT_GE(pooled_memory().given, given + size_t{256} * 128 * 16);
     large.release();
     EXPECT_EQ(pooled_memory().given, given);
     EXPECT_FALSE(large.is_ahead());
