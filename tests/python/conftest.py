@@ -1,9 +1,14 @@
 """Shared by all tests: a small picture, a cache folder of their own, meshes whose values are known."""
 
 import os
+import signal
 import tempfile
 
 import pytest
+
+# Who starts tests in the background may ignore it, and programs that tests start and interrupt would too.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 _cache = tempfile.TemporaryDirectory(prefix="easypbr-test-cache-")
 os.environ["EASYPBR_CACHE_DIR"] = _cache.name
