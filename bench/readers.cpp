@@ -19,11 +19,11 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/stopwatch.h"
-#include "easypbr/easypbr.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/archive/lzf.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/mesh.h"
 #include "readers_peers.h"
 
 namespace {
