@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "easypbr/gpu/packing.h"
@@ -41,7 +42,10 @@ struct NormalLines {
     /// of the world.
     std::array<float, 9> metric = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-    auto operator<=>(const NormalLines&) const = default;
+    bool operator==(const NormalLines&) const = default;
+    bool operator<(const NormalLines& other) const {
+        return std::tie(length, metric) < std::tie(other.length, other.metric);
+    }
 };
 
 /// The same for all poses of one scale.
