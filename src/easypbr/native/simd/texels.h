@@ -208,7 +208,7 @@ INLINE Place place_of(const View& s, vint x, vint y) {
 INLINE int row_at(const View& s, vint x, vint y) {
     // Idle lanes may hold any numbers.
     const int64_t column = int64_t(x.v[0]) - s.x, row = int64_t(y.v[0]) - s.y;
-    const Ints unlike = ((x.v - splat(x.v[0])) ^ lane_numbers().v) | (y.v ^ splat(y.v[0]));
+    const Ints unlike = (x.v ^ (splat(x.v[0]) + lane_numbers().v)) | (y.v ^ splat(y.v[0]));
     if (any_lane(vbool(Ints(unlike != 0)))) return -1;
     const bool held = column >= 0 && column + lanes <= s.held_width && row >= 0 && row < s.held_height;
     return held ? int(row * s.held_width + column) : -1;
