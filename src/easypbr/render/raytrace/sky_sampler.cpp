@@ -53,7 +53,7 @@ SkySampler::Texels SkySampler::texels_at(const Vec2& place) const {
     const Image& image = environment_.image();
     const float x = place.x() * float(image.width()) - 0.5f, y = place.y() * float(image.height()) - 0.5f;
     const float left = std::floor(x), above = std::floor(y);
-    const int column = int(left), row = int(above);
+    const int column = std::clamp(int(left), -1, image.width() - 1), row = int(above);
     const auto row_at = [&](int at) { return std::clamp(at, 0, image.height() - 1); };
     const auto column_at = [&](int at) { return (at + image.width()) % image.width(); };
     const int columns[2] = {column_at(column), column_at(column + 1)},
