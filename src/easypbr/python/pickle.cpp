@@ -106,12 +106,9 @@ void exchange(Archive& archive, Object& mesh) {
     archive("T_parent_mesh", mesh.T_parent_mesh.matrix());
     archive("children", mesh.children);
     // It is for the faces that the mesh has.
-    if constexpr (std::is_const_v<Object>) {
-        if (mesh.rest_shape.F_revision == mesh.F.revision()) archive("rest_V", mesh.rest_shape.V);
-    } else {
+    if (!std::is_const_v<Object> || mesh.rest_shape.F_revision == mesh.F.revision())
         archive("rest_V", mesh.rest_shape.V);
-        mesh.rest_shape.F_revision = mesh.F.revision();
-    }
+    if constexpr (!std::is_const_v<Object>) mesh.rest_shape.F_revision = mesh.F.revision();
 }
 
 template <class Archive, Is<Intrinsics> Object>
