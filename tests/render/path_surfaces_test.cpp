@@ -254,5 +254,39 @@ TEST(PathSurfaces, PanesTintLampsBetweenVerticesByLight) {
     EXPECT_NEAR(render_linear(session, 16).at<float>(8, 8)[0], 0.5 * 0.96 * (1 + x) / 2, 0.005);
 }
 
+// A pane reflects more of a lamp's light the more slanted it is (Schlick 1994), by the strength of its
+// reflection, and passes the rest. Light falls straight down through the middle of panes that are turned
+// about x; the camera looks below them.
+TEST(PathSurfaces, PanesReflectLampsByTheirAngle) {
+    const auto floor_below = [](double angle_deg, float specular) {
+        Material glass = matt(1);
+        glass.transmission = 1;
+        glass.roughness = 0;
+        glass.specular = specular;
+        Mesh pane = facing_square(1, glass);
+        pane.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 1) *
+                                              Eigen::AngleAxisd(-radians(angle_deg), Vec3d::UnitX())));
+        Scene scene;
+        scene.show(facing_square(1, matt(0.5f)), "floor");
+        scene.show(pane, "pane");
+        shine(scene, Vec3(0, 0, -1));
+        app::Session session = path_session(scene, 4);
+        session.settings().path.bounces = 0;
+        session.settings().shading.dielectric_f0 = 0;
+        look_from(session, Vec3d(0, -4, 1), 20);
+        return double(render_linear(session, 4).at<float>(8, 8)[0]);
+    };
+    struct Case {
+        double angle_deg;
+        float specular;
+    };
+    for (const Case& c : {Case{0, 1}, Case{60, 1}, Case{75, 1}, Case{75, 0.5f}, Case{60, 0}}) {
+        SCOPED_TRACE(testing::Message() << c.angle_deg << " degrees, specular " << c.specular);
+        const double reflected = c.specular * (0.04 + 0.96 * std::pow(1 - std::cos(radians(c.angle_deg)), 5));
+        // Nothing is sampled: float32 rounds.
+        EXPECT_NEAR(floor_below(c.angle_deg, c.specular), 0.5 * (1 - reflected), 1e-4);
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::path_surfaces_test

@@ -92,18 +92,26 @@ struct RayQuery {
 /// Light below this part is none.
 inline constexpr float least_transmittance = 1e-3f;
 
+/// Of the angle between a ray and the normal of the face that it meets, both of any length: negative where it
+/// meets the front. 1 for elements without a normal.
+inline float cosine_between(const RTCRay& ray, const RTCHit& hit) {
+    const Vec3 direction(ray.dir_x, ray.dir_y, ray.dir_z), normal(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+    const float lengths = direction.stableNorm() * normal.stableNorm();
+    return lengths > 0 ? direction.dot(normal) / lengths : 1;
+}
+
 /// Takes from light what a surface takes that it passes straight; whether some is left.
 inline bool passes(StraightLight& light, const RayElement& element, const RTCRay& ray, const RTCHit& hit) {
     const DrawItem& item = *element.item;
     const Passage passage = passage_at(item, element.of(hit.primID), hit.u, hit.v);
+    const float cosine = cosine_between(ray, hit);
     if (passage.thickness > 0 && passage.coverage > 0) {
-        const float along = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
         const float thickness = passage.thickness / element.unit;
-        const VolumeFace face{&item,     ray.tfar,       along * element.outwards > 0, element.is_closed,
+        const VolumeFace face{&item,     ray.tfar,       cosine * element.outwards > 0, element.is_closed,
                               thickness, passage.color()};
         if (!light.add(face)) return true;
     }
-    light.left = light.left.cwiseProduct(passage.left());
+    light.left = light.left.cwiseProduct(passage.left(cosine));
     return light.left.maxCoeff() > least_transmittance;
 }
 
@@ -124,7 +132,7 @@ inline void filter(const RTCFilterFunctionNArguments* args) {
         return;
     }
     const float stops = query.transmissive == Transmissive::passed
-                            ? opacity_at(*element.item, index, hit.u, hit.v)
+                            ? opacity_at(*element.item, index, hit.u, hit.v, cosine_between(ray, hit))
                             : coverage_at(*element.item, index, hit.u, hit.v);
     if (query.transmissive == Transmissive::layers && stops > 0) return;
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;

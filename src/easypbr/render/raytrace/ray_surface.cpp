@@ -125,6 +125,8 @@ Passage passage_at(const DrawItem& item, int element, float u, float v) {
     Vec3 color = m.base_color.cwiseProduct(vertex_color(item, element, u, v).head<3>());
     float through = m.transmission, metallic = m.metallic;
     passage.thickness = m.thickness * float(item.scale());
+    passage.f90 = m.specular;
+    Vec3 tinted = m.specular_color * m.dielectric_f0(Material::default_f0);
     if (is_face(item) && item.textured()) {
         const Vec2 uv = uv_at(item, element, u, v);
         const auto channel = [&](const Texture& texture) {
@@ -134,17 +136,20 @@ Passage passage_at(const DrawItem& item, int element, float u, float v) {
         through *= channel(m.transmission_texture);
         metallic *= channel(m.metallic_texture);
         passage.thickness *= channel(m.thickness_texture);
+        passage.f90 *= channel(m.specular_texture);
+        if (m.specular_color_texture)
+            tinted = tinted.cwiseProduct(Texel(m.specular_color_texture, uv).color());
     }
-    passage.entering = 1 - m.dielectric_f0(Material::default_f0);
+    passage.f0 = std::min(tinted.maxCoeff(), 1.0f) * passage.f90;
     passage.tint = color.cwiseMin(1.0f).cwiseMax(0.0f) * std::clamp(through * (1 - metallic), 0.0f, 1.0f);
     return passage;
 }
 
-float opacity_at(const DrawItem& item, int element, float u, float v) {
+float opacity_at(const DrawItem& item, int element, float u, float v, float cosine) {
     const Passage passage = passage_at(item, element, u, v);
     const Vec3 way = absorption_of(item.material) * (0.5f * passage.thickness);
     return passage.coverage *
-           (1 - passage.entering * (passage.color().array() * (-way).array().exp()).mean());
+           (1 - passage.entering(cosine) * (passage.color().array() * (-way).array().exp()).mean());
 }
 
 RaySurface surface_at(const RayHit& hit, float dielectric_f0, float exposure) {

@@ -14,22 +14,30 @@ float coverage_at(const DrawItem& item, int element, float u, float v);
 /// How a face or another element lets light through that passes it straight.
 struct Passage {
     float coverage = 1;   ///< coverage_at()
-    float entering = 0;   ///< what it does not reflect
+    float f0 = 0;         ///< reflectance at normal incidence, of the colour that is reflected most
+    float f90 = 0;        ///< reflectance at grazing angles
     Vec3 tint{0, 0, 0};   ///< of its colours, once for a thin surface and once for both faces of a volume
     float thickness = 0;  ///< of the volume below it, world units; 0: thin
 
     /// The tint of one face.
     Vec3 color() const { return thickness > 0 ? Vec3(tint.cwiseSqrt()) : tint; }
-    /// What one face leaves of light but for what a volume absorbs.
-    Vec3 left() const { return Vec3::Constant(1 - coverage) + coverage * entering * color(); }
+    /// What one face does not reflect of light at this cosine to its normal (Schlick 1994).
+    float entering(float cosine) const {
+        const float c = 1 - std::min(std::abs(cosine), 1.0f);
+        return 1 - (f0 + (f90 - f0) * (c * c) * (c * c) * c);
+    }
+    /// What one face leaves of light at this cosine to its normal but for what a volume absorbs.
+    Vec3 left(float cosine) const {
+        return Vec3::Constant(1 - coverage) + coverage * entering(cosine) * color();
+    }
 };
 Passage passage_at(const DrawItem& item, int element, float u, float v);
 /// Of a material's volume, per world unit; 0 where nothing is absorbed.
 Vec3 absorption_of(const Material& material);
 /// Part of a ray that an element stops: 1 for opaque ones, 0 in the holes of masked ones, and for others what
-/// they take from light, each face of a volume by half of its thickness. Of faces at barycentric coordinates;
-/// of others by their material.
-float opacity_at(const DrawItem& item, int element, float u, float v);
+/// they take from light, each face of a volume by half of its thickness. Of faces at barycentric coordinates,
+/// met at this cosine to their normal; of others by their material.
+float opacity_at(const DrawItem& item, int element, float u, float v, float cosine);
 
 /// glTF's core model.
 struct RaySurface {
