@@ -122,7 +122,7 @@ TEST(SkySampler, SamplesAreWhatIsSeenInTheirDirection) {
     }
     EXPECT_LE(other, side * side / 1000) << "single precision, beside borders";
     double integral = 0;
-    const int rows = 4 * h, columns = 4 * w;
+    const int rows = 6 * h, columns = 6 * w;
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x) {
             const float u = (float(x) + 0.5f) / float(columns), v = (float(y) + 0.5f) / float(rows);
@@ -159,6 +159,25 @@ TEST(SkySampler, MirrorsSeeTheMapFilteredLinearly) {
             EXPECT_NEAR(sky.seen(d, 1e6f).radiance[c],
                         2 * std::lerp(across(above), across(above + 1), y - above), 0.02);
         }
+    }
+}
+
+// A map of few texels lights as its picture looks, without edges between its texels: along the horizon from
+// the middle of a texel of 1 to that of one of 9. 0.07: half of a step between 64 places that the way is
+// divided in.
+TEST(SkySampler, FewTexelsLightWithoutEdges) {
+    const int w = 4, h = 2;
+    Image map(w, h, 3, PixelType::f32);
+    for (float& value : map.pixels<float>()) value = 1;
+    for (int y = 0; y < h; ++y)
+        for (int c = 0; c < 3; ++c) map.at<float>(2, y)[c] = 9;
+    render::SkySampler sky;
+    sky.prepare(Environment(map, "test"), Mat3::Identity(), 1);
+    for (int i = 0; i <= 100; ++i) {
+        const float part = float(i) / 100;
+        const Vec3 direction = equirect_direction((1.5f + part) / w, 0.5f);
+        for (const float density : {1.0f, 1e6f})  // a wide lobe's, a mirror's
+            EXPECT_NEAR(sky.seen(direction, density).radiance.x(), 1 + 8 * part, 0.07) << part;
     }
 }
 

@@ -12,6 +12,8 @@ namespace {
 
 /// A finer map of densities finds nothing that the radiance itself does not tell.
 constexpr int widest_distribution = 512;
+/// Texels of a coarser one would show in lobes as narrow as those that read it.
+constexpr int narrowest_distribution = 256, lowest_distribution = narrowest_distribution / 2;
 /// Directions of less density, per steradian, stand for at least a hundred texels of such a map.
 constexpr float most_blurred = 100;
 /// Directions that are turned at once, and what they read is fetched.
@@ -45,6 +47,7 @@ void SkySampler::prepare(const Environment& environment, const Mat3& R_env_world
     if (environment.empty()) return;
     Image map = environment.image();
     while (map.width() > widest_distribution) map = half_size(map);
+    if (map.width() < narrowest_distribution || map.height() < lowest_distribution) map = finer();
     bright_.prepare(map);
     hash_ = hash;
 }
@@ -70,6 +73,19 @@ Vec3 SkySampler::detail_at(const Vec2& place) const {
     const Vec3 above = texel(0) + texels.x * (texel(1) - texel(0)),
                below = texel(2) + texels.x * (texel(3) - texel(2));
     return above + texels.y * (below - above);
+}
+
+Image SkySampler::finer() const {
+    const Image& image = environment_.image();
+    const auto times = [](int least, int count) { return (least + count - 1) / count; };
+    Image map(image.width() * times(narrowest_distribution, image.width()),
+              image.height() * times(lowest_distribution, image.height()), 3, PixelType::f32);
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x) {
+            const Vec2 place((float(x) + 0.5f) / float(map.width()), (float(y) + 0.5f) / float(map.height()));
+            Eigen::Map<Vec3>(map.at<float>(x, y)) = detail_at(place);
+        }
+    return map;
 }
 
 SkySampler::Sample SkySampler::seen_at(const Vec2& place, const Vec3& direction, float density) const {

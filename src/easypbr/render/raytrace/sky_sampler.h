@@ -49,6 +49,8 @@ class SkySampler {
     Texels texels_at(const Vec2& place) const;
     /// Radiance of the environment map itself.
     Vec3 detail_at(const Vec2& place) const;
+    /// An environment map of few texels, each as several that are filtered as above.
+    Image finer() const;
     Sample seen_at(const Vec2& place, const Vec3& direction, float density) const;
 
     Environment environment_;
