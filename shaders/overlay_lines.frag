@@ -17,6 +17,7 @@ uniform float u_always;       // 1: whatever is in front
 uniform float u_nearer_end;   // 1: each half has the colour of its end
 uniform float u_from_table;   // 1: the ends have values, and these their colours in a table
 uniform sampler2D u_table;    // 256 wide
+uniform float u_opacity;      // of the material
 
 noperspective in vec2 v_place;
 flat in float v_length;
@@ -126,6 +127,6 @@ void main() {
     bool between = is_after(gl_FragCoord.xy, depth) && is_before(gl_FragCoord.xy, depth);
     if (!between) discard;
     vec4 color = color_at(place);
-    float alpha = coverage * color.a;
+    float alpha = coverage * color.a * u_opacity;
     o_color = vec4(color.rgb * alpha, alpha);
 }

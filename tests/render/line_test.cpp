@@ -98,6 +98,26 @@ TEST(Lines, BlendTheColoursOfTheirEnds) {
     }
 }
 
+// Opacities of the material and of the ends multiply.
+TEST(Lines, HaveTheOpacityOfTheirMaterial) {
+    for (const bool native : {true, false}) {
+        Mesh mesh = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0));
+        ArrayXf::Dense C(2, 4);
+        C << 1, 0, 0, 0.5f, 1, 0, 0, 0.5f;
+        mesh.set_C(ArrayXf(C));
+        Material material;
+        material.opacity = 0.25f;
+        mesh.set_material(material);
+        Scene scene;
+        scene.show(mesh, "line");
+        app::Session session = looking_down(scene, 101);
+        session.allow_native_shading(native);
+        session.settings().style.line_width = 5.0f;
+        const Image image = render_linear(session);
+        EXPECT_NEAR(image.at<float>(50, 50)[3], 0.25 * 0.5, 0.001);  // codes of 8 bits
+    }
+}
+
 /// The picture of a line from (-0.9, 0, 0) to (0.9, 0, 0), 5 pixels wide, as sRGB codes.
 Image codes_of(const std::function<void(MeshData&)>& change, bool native, double turn_deg = 0) {
     Mesh mesh = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0));

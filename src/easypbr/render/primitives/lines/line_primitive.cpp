@@ -22,6 +22,7 @@ struct Stroke {
     gpu::LineKind kind;
     std::optional<Vec3> color;  ///< linear; nothing: the data's own
     gpu::NormalLines normals;
+    float opacity = 1;  ///< beside that of the segments' ends
 
     /// As the shader takes it. Lines that are the data's keep its opacity.
     Vec4 color_or_none() const {
@@ -44,8 +45,10 @@ std::vector<Stroke> strokes_of(const DrawItem& item) {
     const DrawStyle& style = item.style;
     std::vector<Stroke> strokes;
     if (style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty())) {
-        strokes.push_back(
-            {mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges, color_of_lines(item), {}});
+        strokes.push_back({mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges,
+                           color_of_lines(item),
+                           {},
+                           item.alpha == AlphaMode::blend ? item.material.opacity : 1.0f});
     }
     const auto given_or = [&](const Vec3& color) {
         return linear_from_srgb(style.line_color.value_or(color));
@@ -85,6 +88,7 @@ template <class To>
 void set_colors(To& to, const DrawItem& item, const Stroke& stroke) {
     to.set("u_nearer_end", !stroke.color && item.colors.labels ? 1.0f : 0.0f);
     to.set("u_from_table", reads_table(item, stroke) ? 1.0f : 0.0f);
+    to.set("u_opacity", stroke.opacity);
 }
 
 }  // namespace
