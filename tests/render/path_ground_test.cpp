@@ -11,7 +11,8 @@ constexpr double height = 20;  ///< of the wall above the ground, of which it hi
 
 /// Black above, and of this radiance in the cone of half this angle around the direction down.
 Environment light_from_below(float radiance, double cone) {
-    constexpr int rows = 64;
+    // Of fewer texels light is filtered between them, and there is some above the edge.
+    constexpr int rows = 128;
     Image image(2 * rows, rows, 3, PixelType::f32);
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < 2 * rows; ++x)

@@ -270,7 +270,7 @@ TEST(PathSurfaces, PanesReflectLampsByTheirAngle) {
         scene.show(facing_square(1, matt(0.5f)), "floor");
         scene.show(pane, "pane");
         shine(scene, Vec3(0, 0, -1));
-        app::Session session = path_session(scene, 4);
+        app::Session session = path_session(scene, 16);
         session.settings().path.bounces = 0;
         session.settings().shading.dielectric_f0 = 0;
         look_from(session, Vec3d(0, -4, 1), 20);
