@@ -288,5 +288,42 @@ TEST(PathSurfaces, PanesReflectLampsByTheirAngle) {
     }
 }
 
+// A large disc throws a round shadow: the light falls straight down, the camera looks at the floor from below
+// the disc. Its polygon of 48 corners deviates by 0.2 % from the circle, an octagon would by 5 %.
+TEST(PathSurfaces, LargeDiscsThrowRoundShadows) {
+    Array3f::Dense V(1, 3), N(1, 3);
+    V << 0, 0, 5;
+    N << 0, 0, 1;
+    Array3f::Dense T(1, 3);
+    T << 1, 0, 0;
+    MeshData data;
+    data.V = Array3f(V);
+    data.N = Array3f(N);
+    data.T = Array3f(T);
+    Mesh disc(data);
+    Style style;
+    style.mode = DrawMode::surfels;
+    disc.set_style(style);
+    Scene scene;
+    scene.show(facing_square(2, matt(0.5f)), "floor");
+    scene.show(disc, "disc");
+    shine(scene, Vec3(0, 0, -1));
+    constexpr int size = 300;
+    app::Session session = path_session(scene, size);
+    session.settings().path.bounces = 0;
+    session.settings().camera.projection = Projection::orthographic;
+    session.settings().camera.ortho_height = 3;
+    look_from(session, Vec3d(0, 0, 3));
+    const Image image = render_linear(session, 1);
+    for (int i = 0; i < 64; ++i)
+        for (const double radius : {0.98, 1.02}) {  // a pixel is 0.01
+            const double angle = 2 * pi * i / 64;
+            const auto pixel = [](double at) { return int(std::lround(size * (0.5 + at / 3) - 0.5)); };
+            const float light =
+                image.at<float>(pixel(radius * std::cos(angle)), pixel(radius * std::sin(angle)))[0];
+            EXPECT_EQ(light > 0.25f, radius > 1) << i;
+        }
+}
+
 }  // namespace
 }  // namespace easypbr::path_surfaces_test

@@ -24,8 +24,9 @@ class RayGeometry {
     /// A disc around each vertex, across its normal, or towards the ray where the mesh has none. `radius` is
     /// in world units.
     virtual void add_discs(const DrawItem& item, double radius) = 0;
-    /// A convex polygon of `corners` corners for each vertex. polygon(vertex, out) gives them in the mesh's
-    /// frame; it is called from several threads.
+    static constexpr int most_corners = 48;
+    /// A convex polygon of `corners` corners, 3 to most_corners, for each vertex. polygon(vertex, out) gives
+    /// them in the mesh's frame; it is called from several threads.
     virtual void add_polygons(
         const DrawItem& item, int corners,
         const std::function<void(Eigen::Index vertex, std::span<Vec3d> out)>& polygon) = 0;

@@ -127,7 +127,7 @@ struct RayScene::Scene final : RayGeometry {
         const auto F = tree.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
                                                             count * triangles);
         parallel_for(count, 1 << 10, [&](size_t i) {
-            std::array<Vec3d, most_corners> places;
+            std::array<Vec3d, size_t(most_corners)> places;
             polygon(Eigen::Index(i), std::span(places.data(), n));
             for (size_t c = 0; c < n; ++c) {
                 const Vec3 p = (T * places[c]).cast<float>();
@@ -151,7 +151,6 @@ struct RayScene::Scene final : RayGeometry {
         attach(geometry, {.item = &item, .gaussians = &set});
     }
 
-    static constexpr size_t most_corners = 16;
     double world_scale;
     Eigen::Affine3d from_world;
     embree::Scene tree;

@@ -2,14 +2,20 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace easypbr::render {
 namespace {
 
-/// Corners of the polygon that an ellipse is for rays; its area is that of the ellipse.
-constexpr int polygon_corners = 8;
+/// Corners of the polygon that an ellipse is for rays; its area is that of the ellipse. Few ellipses may be
+/// large in the picture, many are small.
+int corners_for(Eigen::Index ellipses) {
+    constexpr Eigen::Index most_in_all = 1 << 16;
+    return int(std::clamp<Eigen::Index>(most_in_all / std::max<Eigen::Index>(ellipses, 1), 8,
+                                        RayGeometry::most_corners));
+}
 
 }  // namespace
 
@@ -48,9 +54,10 @@ ScreenReach SurfelPrimitive::screen_reach(const Frame&, const DrawItem& item) {
 void SurfelPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const auto own_radius = float(shadows_.radius(item));
-    const double turn = 2 * std::numbers::pi / polygon_corners;
+    const int count = corners_for(mesh.V.rows());
+    const double turn = 2 * std::numbers::pi / count;
     const double same_area = std::sqrt(turn / std::sin(turn)) * item.style.surfel_scale;
-    geometry.add_polygons(item, polygon_corners, [&](Eigen::Index i, std::span<Vec3d> corners) {
+    geometry.add_polygons(item, count, [&](Eigen::Index i, std::span<Vec3d> corners) {
         const Vec3d centre = mesh.V.row(i).transpose().cast<double>(),
                     n = mesh.N.row(i).transpose().cast<double>().normalized();
         const Vec3d t = mesh.T.empty() ? Vec3d(n.unitOrthogonal() * own_radius)
