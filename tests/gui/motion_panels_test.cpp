@@ -45,6 +45,24 @@ TEST_F(MotionPanels, KeysArePlacedListedMovedAndRemoved) {
     EXPECT_DOUBLE_EQ(path.path()->duration_s(), 2);
 }
 
+// A turn around what is shown takes the place of the keys.
+TEST_F(MotionPanels, ATurntableIsAPath) {
+    unfold(Panel::camera_path);
+    three_keys();
+    settle();
+    click("Camera path/key 3");
+    click("Camera path/Turntable");
+    EXPECT_FALSE(view_.drawing().path().key);
+    const std::optional<CameraPath>& path = view_.drawing().path().editor.path();
+    ASSERT_TRUE(path);
+    EXPECT_DOUBLE_EQ(path->duration_s(), 8);
+    const Vec3d start = path->pose(0).translation(), opposite = path->pose(4).translation();
+    EXPECT_LT((path->pose(8).translation() - start).norm(), 1e-9);
+    EXPECT_NEAR(start.y(), opposite.y(), 1e-9);
+    const Vec3d middle = view_.drawing().session().scene().snapshot().bounds().center();
+    EXPECT_NEAR((start - middle).norm(), (opposite - middle).norm(), 1e-6);
+}
+
 TEST_F(MotionPanels, TheChosenKeyStaysChosenWhereverItIsMoved) {
     unfold(Panel::camera_path);
     three_keys();

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "easypbr/app/camera_text.h"
+#include "easypbr/app/recorder.h"
 #include "easypbr/core/error.h"
 
 namespace easypbr::app {
@@ -153,6 +154,12 @@ void LiveDrawing::add_path_key() {
     const size_t at = path_.key && *path_.key < count ? *path_.key + 1 : count;
     path_.editor.insert(at, session_.camera());
     path_.key = at;
+}
+
+void LiveDrawing::set_turntable() {
+    constexpr double turn_s = 8;
+    path_.editor.set(turntable(session_, turn_s, player_));
+    path_.key.reset();
 }
 
 bool LiveDrawing::is_moving(const LiveNeeds& needs) const {

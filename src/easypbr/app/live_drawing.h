@@ -155,6 +155,8 @@ class LiveDrawing {
     PathPlan& path() { return path_; }
     /// A key of the camera path from what is seen now, after the chosen one. Throws as Session::camera().
     void add_path_key();
+    /// Makes the path that is edited a turntable of eight seconds. Throws SceneError if nothing is shown.
+    void set_turntable();
 
     /// What the next recording shall be.
     RecordingForm& recording_form() { return form_; }

@@ -165,10 +165,12 @@ void file_rows(GuiState& state) {
 }  // namespace
 
 void camera_path_panel(GuiState& state) try {
-    const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-    if (path_button("Add key (K)", half)) state.live.add_path_key();
+    const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+    if (path_button("Add key (K)", third)) state.live.add_path_key();
     ImGui::SameLine();
-    if (path_button("Clear", half, !state.path().editor.keys().empty() || state.path().editor.path())) {
+    if (path_button("Turntable", third, !state.session().scene().names().empty())) state.live.set_turntable();
+    ImGui::SameLine();
+    if (path_button("Clear", third, !state.path().editor.keys().empty() || state.path().editor.path())) {
         state.path().editor.clear();
         state.path().key.reset();
     }

@@ -103,7 +103,7 @@ void path_tool(RecordedWidgets& ui, ToolState& state) {
     if (live.session().scene().names().empty()) return ui.text("Nothing is shown yet.");
     if (ui.button("Add key")) live.add_path_key();
     ui.same_line();
-    if (ui.button("Turntable")) path.set(app::turntable(live.session(), 8, live.player()));
+    if (ui.button("Turntable")) live.set_turntable();
     ui.same_line();
     if (ui.button("Clear")) path.clear(), live.path().key.reset();
     key_list(ui, live);
