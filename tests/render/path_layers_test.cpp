@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "render_test.h"
 
 #include "easypbr/scene/material_table.h"
@@ -117,6 +119,51 @@ double apart(const Image& a, const Image& b) {
     for (size_t i = 0; i < pixels; ++i)
         for (size_t c = 0; c < 3; ++c) sum += std::abs(shown(a, i, c) - shown(b, i, c));
     return sum / double(3 * pixels);
+}
+
+// Each of several objects takes its part of light from all sides, faces of the same number, too. 0.016: four
+// deviations of 64 pixels of 256 samples, each of which arrives or not.
+TEST(PathLayers, LightPassesSeveralObjectsInTurn) {
+    for (int count = 1; count <= 3; ++count) {
+        Scene scene;
+        Material white = blended(1, 1);
+        white.specular = 0;
+        scene.show(facing_square(50, white), "floor");
+        for (int i = 0; i < count; ++i) {
+            Material filter = blended(0, 0.5f);
+            filter.specular = 0;
+            Mesh layer = facing_square(50, filter);
+            layer.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 2 + i)));
+            scene.show(layer, fmt::format("filter {}", i));
+        }
+        app::Session session = session_under_sky(scene, 16);
+        look_from(session, Vec3d(0, -1, 1), 20);
+        EXPECT_NEAR(mean_of_middle(render_linear(session, 256)), std::pow(0.5, count), 0.016) << count;
+    }
+}
+
+/// Two layers of opacity 0.3 that are nearer to each other than a pixel of 16 is wide.
+double mean_of_two_layers(float specular, int size) {
+    Material matt = blended(0.8f, 0.3f);
+    matt.specular = specular;
+    Scene scene;
+    scene.show(facing_square(20, matt), "front");
+    Mesh behind = facing_square(20, matt);
+    behind.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, -0.05)));
+    scene.show(behind, "behind");
+    app::Session session = session_under_sky(scene, size);
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(0, 0, 5), 30);
+    return mean_of_middle(render_linear(session, 512));
+}
+
+// What a layer gets does not depend on the size of a pixel. The front one gets all of the sky's light. The
+// other one gets e = 0.7 + 0.24 (0.24 e + 0.7): what passes the front, and what comes back to it from there.
+// 0.002: four deviations.
+TEST(PathLayers, LayersWithinAPixelAreLitInTurn) {
+    const double e = 0.7 * 1.24 / (1 - 0.24 * 0.24);
+    EXPECT_NEAR(mean_of_two_layers(0, 16), 0.24 + 0.7 * 0.24 * e, 0.002);
+    EXPECT_NEAR(mean_of_two_layers(1, 16), mean_of_two_layers(1, 128), 0.002);
 }
 
 // Half of the noisy picture's error at most, of light and of what is covered: a shadow that the ground

@@ -17,7 +17,12 @@
 
 namespace easypbr::render {
 
-/// Well-spread number in [0, 1) of a ray and the element it meets.
+/// Of a primitive among those of all geometries.
+inline unsigned number_of(unsigned geometry, unsigned primitive) {
+    return pcg_hash(geometry) ^ primitive;
+}
+
+/// Well-spread number in [0, 1) of a ray and the element it meets: number_of().
 inline float hash_of(const RTCRay& ray, unsigned element) {
     uint32_t state = pcg_advance(element);
     for (const float value : {ray.dir_x, ray.dir_y, ray.dir_z, ray.org_x, ray.org_y, ray.org_z})
@@ -135,7 +140,8 @@ inline void filter(const RTCFilterFunctionNArguments* args) {
                             ? opacity_at(*element.item, index, hit.u, hit.v, cosine_between(ray, hit))
                             : coverage_at(*element.item, index, hit.u, hit.v);
     if (query.transmissive == Transmissive::layers && stops > 0) return;
-    if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
+    if (stops < 1 && (stops <= 0 || hash_of(ray, number_of(hit.geomID, hit.primID)) >= stops))
+        args->valid[0] = 0;
 }
 
 inline Vec3 origin_of(const RTCRay& ray) {
@@ -171,7 +177,7 @@ RayGaussians::Meeting meeting_of(const Arguments* args, const RTCRay& ray) {
 
 template <class Arguments>
 bool is_stopped(const Arguments* args, const RTCRay& ray, float opacity) {
-    return opacity > 0 && hash_of(ray, args->primID ^ (args->geomID << 24)) < opacity;
+    return opacity > 0 && hash_of(ray, number_of(args->geomID, args->primID)) < opacity;
 }
 
 inline void meet_gaussian(const RTCIntersectFunctionNArguments* args) {

@@ -392,6 +392,15 @@ RayScene::Seen RayScene::seen_by(const Place& place, const RaySegment& ray, floa
 }
 
 RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {
+    if (transmissive == Transmissive::layers && place.footprint > 0) {
+        // Within the footprint there may be other layers of the same pixel: the place's own counts.
+        Place exact = place;
+        exact.footprint = 0;
+        const RaySegment ray = ray_to(exact);
+        const auto hit = first_hit(ray, transmissive, false);
+        if (hit && has_normal(hit->on(), hit->normal, place.normal))
+            return seen_by(exact, ray, hit->distance, hit->normal, hit->on());
+    }
     const RaySegment ray = ray_to(place);
     const auto hit = first_hit(ray, transmissive, false);
     return hit ? seen_by(place, ray, hit->distance, hit->normal, hit->on()) : nothing_at(place);
@@ -438,7 +447,11 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
 
 std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint,
                                        Transmissive transmissive) const {
-    const float near = std::max(rounding_at(place), footprint);
+    const float rounding = rounding_at(place), near = std::max(rounding, footprint);
+    if (transmissive == Transmissive::layers) {
+        auto own = first_hit({place + rounding * view, -view, 2 * rounding}, transmissive, false);
+        if (own && own->surface >= 0) return own;
+    }
     auto hit = first_hit({place + near * view, -view, endless}, transmissive, false);
     // At a silhouette the surface may go on behind the place, by more than a pixel.
     if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
