@@ -35,6 +35,13 @@ vec3 tangent_space(Surface s, vec3 direction, float cosine) {
     return vec3(dot(s.extension.tangent, direction), dot(cross(s.normal, s.extension.tangent), direction), cosine);
 }
 
+// The angle at which facets reflect a direction of view, on average: there the Fresnel term of Schlick weighs the reflectance
+// at grazing angles as it does over the whole lobe. On rough surfaces few facets are seen at grazing angles.
+float mean_facet_cosine(float n_dot_v, float roughness, vec2 dfg) {
+    float mean = 1.0 - pow(clamp(dfg.y / max(dfg.x + dfg.y, 1e-6), 0.0, 1.0), 0.2);
+    return mix(n_dot_v, max(n_dot_v, mean), smoothstep(0.0, 0.2, roughness));
+}
+
 // Fills in what plain surfaces have too, and what each layer leaves of those below. The extension is known.
 void prepare_extended(inout Surface s, vec3 albedo, float metallic) {
     Extension e = s.extension;
@@ -51,7 +58,8 @@ void prepare_extended(inout Surface s, vec3 albedo, float metallic) {
     Energy dielectric = surface_energy(e.f0, vec3(e.f90), dfg);
     s.energy = mixed_energy(dielectric, surface_energy(albedo, dfg), metallic);
     if (has_iridescence) {
-        s.film = e.iridescence > 0.0 ? F_film(min(s.n_dot_v, 1.0), e.film_ior, e.film_thickness, s.f0) : s.f0;
+        float cosine = mean_facet_cosine(min(s.n_dot_v, 1.0), roughness, dfg);
+        s.film = e.iridescence > 0.0 ? F_film(cosine, e.film_ior, e.film_thickness, s.f0) : s.f0;
         Energy film = surface_energy(s.film, s.film, dfg);
         s.energy.single = mix(s.energy.single, film.single, e.iridescence);
         s.energy.multiple = mix(s.energy.multiple, film.multiple, e.iridescence);

@@ -58,6 +58,20 @@ TEST(PathExtensions, WhiteFurnace) {
     for (const auto& [name, material] : materials) EXPECT_NEAR(furnace(material), 1, 0.005) << name;
 }
 
+// Films on dielectrics: what facets reflect is what the base loses, at grazing angles, too. 0.01: the mean
+// angle of facets stands for all of them.
+TEST(PathExtensions, WhiteFurnaceOfFilms) {
+    for (const float roughness : {0.1f, 0.3f, 0.5f, 0.8f})
+        for (const float thickness : {100.0f, 400.0f})
+            EXPECT_NEAR(furnace(white([&](Material& m) {
+                            m.iridescence = 1;
+                            m.roughness = roughness;
+                            m.iridescence_thickness_min = m.iridescence_thickness_max = thickness;
+                        })),
+                        1, 0.01)
+                << roughness << ", " << thickness << " nm";
+}
+
 // The albedo of an anisotropic lobe is taken for that of an isotropic one, which is off by up to 0.06.
 TEST(PathExtensions, WhiteFurnaceOfAnisotropy) {
     const Material brushed = white([](Material& m) { m.anisotropy = 0.6f, m.metallic = 1; });
