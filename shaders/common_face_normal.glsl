@@ -19,3 +19,17 @@ vec3 face_normal(vec2 pixel, vec3 center) {
     vec3 n = normalize(cross(along[1], along[0]));
     return n;
 }
+
+// 1 where a normal is that of a plane which goes on to all neighbours, up to 8 degrees; 0 at edges.
+float planarity(vec2 pixel, vec3 center, vec3 normal) {
+    float planar = 1.0;
+    for (int i = 0; i < 4; ++i) {
+        float side = float(i & 1) * 2.0 - 1.0;
+        vec2 at = pixel + (i < 2 ? vec2(side, 0.0) : vec2(0.0, side));
+        bool outside = at.x < 0.0 || at.y < 0.0 || at.x > u_size.x || at.y > u_size.y;
+        float d = textureLod(u_depth_target, at / u_size, 0.0).r;
+        vec3 way = view_position(at, d) - center;
+        planar = outside || (d > 0.0 && abs(dot(way, normal)) <= 0.14 * length(way)) ? planar : 0.0;
+    }
+    return planar;
+}

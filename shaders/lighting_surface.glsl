@@ -23,26 +23,48 @@ uniform float u_first_block;  // 1: of the first block of lights, which adds wha
 
 #include "common_face_normal.glsl"
 
-// Radiance from one light.
-vec3 direct(Light light, Surface s) {
+// Radiance from one light, and the direction to it; none to an area.
+vec3 direct(Light light, Surface s, out vec3 l) {
+    l = vec3(0.0);
     if (has_area_lights && light.position.w > 2.5) return light.color.rgb * area_scattered(light, s);
-    vec3 l;
     vec3 arrives = arriving(light, s.position, l);
     return arrives * scattered(l, s);
 }
 
+// Cosines to a face below which its shadow map does not tell that it hides the light itself.
+const float grazing = 0.06;
+
 // The lights of the block; `view_p` is the surface's position in view space.
 vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
-    vec3 face = s.normal, radiance = vec3(0.0);
+    vec3 face = s.normal, flat_normal = s.normal, radiance = vec3(0.0);
+    float planar = 0.0;
+    bool is_known = false;
     if (has_shadows) {
-        vec3 flat_normal = u_world_from_view * face_normal(gl_FragCoord.xy, view_p);
-        // Of a pixel without neighbours it is no number.
-        face = dot(flat_normal, s.normal) >= 0.3 ? flat_normal : s.normal;
+        flat_normal = face_normal(gl_FragCoord.xy, view_p);
+        face = u_world_from_view * flat_normal;
+        // At edges the depths around a pixel tell of no plane, and of one without neighbours it is no number.
+        bool agrees = dot(face, s.normal) >= 0.3;
+        if (any_lane(lit && !agrees)) {
+            planar = planarity(gl_FragCoord.xy, view_p, flat_normal);
+            is_known = true;
+        }
+        face = agrees || planar > 0.5 ? face : s.normal;
     }
     for (int i = 0; i < u_block_lights; ++i) {
-        vec3 light = direct(u_lights[i], s);
-        if (has_shadows && i >= u_plain_lights)
-            light *= shadow_of(i, s.position, face, lit && any(greaterThan(light, vec3(0.0))));
+        vec3 l;
+        vec3 light = direct(u_lights[i], s, l);
+        if (has_shadows && i >= u_plain_lights) {
+            bool needed = lit && any(greaterThan(light, vec3(0.0)));
+            light *= shadow_of(i, s.position, face, needed);
+            // Normals that are bent or interpolated may face a light behind the surface.
+            float cosine = dot(face, l);
+            bool behind = needed && cosine < 0.0 && dot(s.normal, l) > 0.0;
+            if (any_lane(behind && !is_known)) {
+                planar = planarity(gl_FragCoord.xy, view_p, flat_normal);
+                is_known = true;
+            }
+            light *= behind && planar > 0.5 ? max(1.0 + cosine / grazing, 0.0) : 1.0;
+        }
         radiance += light;
     }
     return radiance;

@@ -285,8 +285,9 @@ TEST(PathSurfaces, PanesReflectLampsByTheirAngle) {
     for (const Case& c : {Case{0, 1}, Case{60, 1}, Case{75, 1}, Case{75, 0.5f}, Case{60, 0}}) {
         SCOPED_TRACE(testing::Message() << c.angle_deg << " degrees, specular " << c.specular);
         const double reflected = c.specular * (0.04 + 0.96 * std::pow(1 - std::cos(radians(c.angle_deg)), 5));
-        // Nothing is sampled: float32 rounds.
-        EXPECT_NEAR(floor_below(c.angle_deg, c.specular) / open, 1 - reflected, 1e-4);
+        // Over the disc of the sun reflectances differ by 0.006 from its middle's, of which 16 samples have
+        // the mean.
+        EXPECT_NEAR(floor_below(c.angle_deg, c.specular) / open, 1 - reflected, 1e-3);
     }
 }
 
@@ -309,7 +310,11 @@ TEST(PathSurfaces, LargeDiscsThrowRoundShadows) {
     Scene scene;
     scene.show(facing_square(2, matt(0.5f)), "floor");
     scene.show(disc, "disc");
-    shine(scene, Vec3(0, 0, -1));
+    Light sun;
+    sun.type = LightType::directional;
+    sun.direction = Vec3(0, 0, -1);
+    sun.angular_radius_deg = 0;
+    scene.set_light("sun", sun);
     constexpr int size = 300;
     app::Session session = path_session(scene, size);
     session.settings().path.bounces = 0;

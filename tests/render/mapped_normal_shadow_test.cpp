@@ -1,0 +1,98 @@
+// Shadows of lamps on surfaces whose shading normals are far from those of their faces.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "render_test.h"
+
+namespace easypbr::mapped_normal_shadow_test {
+namespace {
+
+/// A square in the plane z = 0 of albedo 0.8, whose mapped normals are tilted towards +x.
+Mesh tilted(double tilt_deg) {
+    const double tilt = radians(tilt_deg);
+    Image normals(2, 2, 3, PixelType::u8);
+    for (int i = 0; i < 4; ++i) {
+        uint8_t* texel = normals.at<uint8_t>(i % 2, i / 2);
+        texel[0] = uint8_t(std::lround(127.5 * (1 + std::sin(tilt))));
+        texel[1] = 128;
+        texel[2] = uint8_t(std::lround(127.5 * (1 + std::cos(tilt))));
+    }
+    Material m;
+    m.base_color = Vec3::Constant(0.8f);
+    m.metallic = 0;
+    m.roughness = 1;
+    m.specular = 0;
+    m.normal_texture.image = std::make_shared<Image>(normals);
+    return facing_square(2, m);
+}
+
+/// Of a lamp of irradiance pi at the origin, where Lambert has the albedo times the cosine.
+Light lamp(LightType type, const Vec3& from) {
+    Light light;
+    light.type = type;
+    light.direction = -from;
+    light.position = 3 * from.cast<double>();
+    light.intensity = float(type == LightType::point ? 9 * pi : pi);
+    light.radius = 0.05f;
+    return light;
+}
+
+app::Session session_of(const Scene& scene, ShadowMode mode) {
+    app::Session session = plain_session(scene, 32);
+    session.settings().shadows.enabled = true;
+    session.settings().shadows.mode = mode;
+    look_from(session, Vec3d(0, 0, 4), 20);
+    return session;
+}
+
+constexpr ShadowMode modes[] = {ShadowMode::hard, ShadowMode::pcf, ShadowMode::soft};
+
+// A plane does not shade itself, however its normals lie. 0.01: 8 bits of the normal texture.
+TEST(MappedNormalShadows, StrongNormalMapsDoNotShadeTheirSurface) {
+    for (const bool native : {true, false})
+        for (const ShadowMode mode : modes)
+            for (const double tilt : {60.0, 74.0, 80.0, 84.0}) {
+                Scene scene;
+                scene.show(tilted(tilt), "square");
+                scene.set_light("sun", lamp(LightType::directional, Vec3(0, 0, 1)));
+                app::Session session = session_of(scene, mode);
+                session.allow_native_shading(native);
+                const Image image = render_linear(session);
+                for (const int x : {4, 16, 27})
+                    EXPECT_NEAR(image.at<float>(x, 20)[0], 0.8 * std::cos(radians(tilt)), 0.01)
+                        << tilt << " degrees, mode " << int(mode);
+            }
+}
+
+// A sheet hides lamps behind it though its normals are turned to them, in the picture's corners, too; those
+// before it shine on it.
+TEST(MappedNormalShadows, SheetsHideLampsBehindThem) {
+    for (const bool native : {true, false})
+        for (const ShadowMode mode : modes)
+            for (const LightType type : {LightType::directional, LightType::point})
+                for (const double below : {5.0, 10.0, 20.0, 25.0, -10.0}) {
+                    const double angle = radians(below);
+                    Scene scene;
+                    scene.show(tilted(60), "square");
+                    scene.set_light("sun",
+                                    lamp(type, Vec3(float(std::cos(angle)), 0, -float(std::sin(angle)))));
+                    app::Session session = session_of(scene, mode);
+                    session.allow_native_shading(native);
+                    const Image image = render_linear(session);
+                    float least = 10, most = 0;
+                    for (int y = 0; y < 32; ++y)
+                        for (int x = 0; x < 32; ++x) {
+                            least = std::min(least, image.at<float>(x, y)[0]);
+                            most = std::max(most, image.at<float>(x, y)[0]);
+                        }
+                    if (below > 0) {
+                        EXPECT_EQ(most, 0) << below << " degrees, mode " << int(mode);
+                    } else {
+                        EXPECT_GT(least, 0.3) << "mode " << int(mode);
+                    }
+                }
+}
+
+}  // namespace
+}  // namespace easypbr::mapped_normal_shadow_test
