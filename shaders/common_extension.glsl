@@ -14,7 +14,7 @@ struct Extension {
     vec3 tangent;                        // world: where reflections are drawn out; at a right angle to the normal
     float transmission, ior, thickness;  // thickness in world units, 0: thin-walled
     float dispersion;                    // of the volume: 20 / Abbe number
-    vec3 transmittance;                  // of the volume below the surface
+    vec3 absorption;                     // of the volume below the surface, per world unit: -ln(transmittance)
 };
 
 // Square roots keep the relative steps of a few bits below what is seen.
@@ -35,6 +35,20 @@ const float full_turn = 6.28318530717958648;
 float pack_ior(float ior) { return min(1.0 - 1.0 / (ior * ior), 254.0 / 255.0); }
 float unpack_ior(float code) { return inversesqrt(max(1.0 - code, 1.0 / 255.0)); }
 
+// Lengths from 2^-64 to 2^64 in 16 bits, in steps of 0.14 %; 0 is 0.
+vec2 pack_lengths(vec2 lengths) {
+    vec2 code = log(clamp(lengths, 1e-19, 1e19)) / 88.722839 + 0.5;
+    return vec2(lengths.x > 0.0 ? code.x : 0.0, lengths.y > 0.0 ? code.y : 0.0);
+}
+
+vec2 unpack_lengths(vec2 code) {
+    vec2 lengths = exp((code - 0.5) * 88.722839);
+    return vec2(code.x > 0.0 ? lengths.x : 0.0, code.y > 0.0 ? lengths.y : 0.0);
+}
+
+// What a volume leaves of light along a path, world units.
+vec3 transmittance_over(Extension e, float path) { return exp(-e.absorption * path); }
+
 // `normal` is the one that a reader of the G-buffer decodes.
 void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second) {
     vec3 b1, b2;
@@ -47,8 +61,10 @@ void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second)
     second.x = pack_reflectance(e.f0);
     second.y = packHalf2x16(vec2(e.film_thickness, 0.0)) |
                packUnorm4x8(vec4(0.0, 0.0, pack_ior(e.film_ior), pack_ior(e.ior)));
-    second.z = floatBitsToUint(e.thickness);
-    second.w = packUnorm4x8(vec4(sqrt(e.transmittance), e.transmission));
+    // The length after which 1/e is left of the colour that is absorbed most, and the other absorptions as parts of that.
+    float most = max(e.absorption.r, max(e.absorption.g, e.absorption.b));
+    second.z = packUnorm2x16(pack_lengths(vec2(e.thickness, most > 0.0 ? 1.0 / most : 0.0)));
+    second.w = packUnorm4x8(vec4(sqrt(e.absorption / max(most, 1e-30)), e.transmission));
 }
 
 Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
@@ -74,9 +90,10 @@ Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
     v = unpackUnorm4x8(second.y);
     e.film_ior = unpack_ior(v.z);
     e.ior = unpack_ior(v.w);
-    e.thickness = uintBitsToFloat(second.z);
+    vec2 lengths = unpack_lengths(unpackUnorm2x16(second.z));
+    e.thickness = lengths.x;
     v = unpackUnorm4x8(second.w);
-    e.transmittance = v.rgb * v.rgb;
+    e.absorption = lengths.y > 0.0 ? v.rgb * v.rgb / lengths.y : vec3(0.0);
     e.transmission = v.a;
     return e;
 }
@@ -98,7 +115,7 @@ Extension chosen_extension(bool first, Extension a, Extension b) {
     a.ior = first ? a.ior : b.ior;
     a.thickness = first ? a.thickness : b.thickness;
     a.dispersion = first ? a.dispersion : b.dispersion;
-    a.transmittance = first ? a.transmittance : b.transmittance;
+    a.absorption = first ? a.absorption : b.absorption;
     return a;
 }
 
@@ -118,6 +135,6 @@ Extension plain_extension(vec3 normal, vec3 f0) {
     frame_around(normal, e.tangent, bitangent);
     e.transmission = e.thickness = e.dispersion = 0.0;
     e.ior = 1.5;
-    e.transmittance = vec3(1.0);
+    e.absorption = vec3(0.0);
     return e;
 }

@@ -20,7 +20,7 @@ uniform vec4 u_specular;     // colour times the reflectance that the index of r
 uniform vec4 u_film;         // iridescence, index of refraction, least and greatest thickness
 uniform vec3 u_anisotropy;   // strength, cosine and sine of the rotation
 uniform vec4 u_volume;       // transmission, thickness in world units, index of refraction, dispersion
-uniform vec3 u_attenuation;  // per thickness: logarithm of what goes through
+uniform vec3 u_absorption;   // per world unit: -ln(transmittance)
 
 uniform sampler2D u_clearcoat_texture;
 uniform vec4 u_clearcoat_channel;
@@ -77,13 +77,8 @@ void read_dielectric(inout Extension e) {
     e.ior = u_volume.z;
     e.dispersion = u_volume.w;
     if (has_transmission_texture) e.transmission *= channel_of(u_transmission_texture, 14, u_transmission_channel);
-    vec3 attenuation = u_attenuation;
-    if (has_thickness_texture) {
-        float part = channel_of(u_thickness_texture, 15, u_thickness_channel);
-        e.thickness *= part;
-        attenuation *= part;
-    }
-    e.transmittance = exp(attenuation);
+    if (has_thickness_texture) e.thickness *= channel_of(u_thickness_texture, 15, u_thickness_channel);
+    e.absorption = u_absorption;
 }
 
 void read_anisotropy(inout Extension e, Normals n) {

@@ -153,7 +153,7 @@ vec3 scattered(vec3 l, Surface s) {
     vec3 h = normalize(l + s.view);
     float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0);
     vec3 base = scattered_by_base(l, h, n_dot_l, s);
-    if (has_transmission) base += s.extension.transmittance * s.through * transmitted_lobe(l, s);
+    if (has_transmission) base += transmittance_over(s.extension, s.extension.thickness) * s.through * transmitted_lobe(l, s);
     float keep = 1.0;
     if (has_sheen) keep = sheen_keep(n_dot_l, s);
     return under_layers(base, l, h, n_dot_l, keep, s);

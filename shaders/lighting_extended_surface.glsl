@@ -32,7 +32,7 @@ vec3 area_transmitted(Light light, Surface s) {
     vec2 dfg = dfg_at(s.n_dot_v, roughness);
     vec3 mirrored = s.view - 2.0 * dot(s.normal, s.view) * s.normal;
     AreaLobe lobe = lobe_around(-s.normal, mirrored, ltc_at(s.n_dot_v, roughness));
-    return s.extension.transmittance * s.through * ((dfg.x + dfg.y) * area_form(lobe, light, s.position));
+    return transmittance_over(s.extension, s.extension.thickness) * s.through * ((dfg.x + dfg.y) * area_form(lobe, light, s.position));
 }
 
 // As that of lighting_plain_surface.glsl. Anisotropic lobes are those of their mean roughness, sheen is seen as matt.

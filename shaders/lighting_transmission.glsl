@@ -228,7 +228,7 @@ Through through_surface(Surface s, float ior) {
         Exit x = through_volume(s, normal, ior);
         within = march(s.position, x.inside, x.path, x.back, is_volume);
         x.path = within.w > 0.5 ? length_to(within.z, s.position, x) : x.path;
-        vec3 left = pow(max(e.transmittance, 1e-6), vec3(x.path / max(e.thickness, 1e-20)));
+        vec3 left = transmittance_over(e, x.path);
         t.part = is_volume ? t.part * left : t.part;
         position = is_volume ? x.position : position;
         direction = is_volume ? x.direction : direction;

@@ -14,7 +14,7 @@ layout(location = 6) out vec4 o_sheen;
 layout(location = 7) out vec4 o_film;
 layout(location = 8) out vec4 o_tangent;
 layout(location = 9) out vec3 o_volume;
-layout(location = 10) out vec3 o_transmittance;
+layout(location = 10) out vec3 o_absorption;
 layout(location = 11) out uvec4 o_first;  // of GBuffer::extension
 layout(location = 12) out uvec4 o_second;
 
@@ -37,6 +37,6 @@ void main() {
     o_film = vec4(e.iridescence, e.film_ior, e.film_thickness, e.coat_roughness);
     o_tangent = vec4(e.tangent, e.anisotropy);
     o_volume = vec3(e.transmission, e.ior, e.thickness);
-    o_transmittance = e.transmittance;
+    o_absorption = e.absorption;
     pack_surface(n, e);
 }

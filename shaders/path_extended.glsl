@@ -13,7 +13,7 @@ in vec4 v_sheen;       // sheen_color, sheen_roughness
 in vec4 v_film;        // iridescence, film_ior, film_thickness, coat_roughness
 in vec4 v_tangent;     // tangent, anisotropy
 in vec3 v_volume;      // transmission, ior, thickness
-in vec3 v_transmittance;
+in vec3 v_absorption;
 
 Extension path_extension() {
     Extension e;
@@ -36,7 +36,7 @@ Extension path_extension() {
     e.ior = v_volume.y;
     e.thickness = v_volume.z;
     e.dispersion = 0.0;  // A path in a volume has the index of its channel.
-    e.transmittance = v_transmittance;
+    e.absorption = v_absorption;
     return e;
 }
 
@@ -77,7 +77,7 @@ vec3 above_face(vec3 light, vec3 l, Surface s) {
         vec2 dfg = dfg_at(s.n_dot_v, transmitted_roughness(s));
         float kept = has_multiple_scattering ? dfg.x + dfg.y : 1.0;
         float lobe = (transmitted_lobe(l, s) + transmitted_lobe(below, s)) / kept;
-        spread = is_clear(s) ? vec3(0.0) : s.keep * s.extension.transmittance * s.through * lobe;
+        spread = is_clear(s) ? vec3(0.0) : s.keep * transmittance_over(s.extension, s.extension.thickness) * s.through * lobe;
     }
     vec3 result = dot(l, v_face) > 0.0 ? light : spread;
     return is_inside() ? vec3(0.0) : result;

@@ -122,7 +122,7 @@ struct ElementHit {
 /// it; an array for each component.
 struct HitExtensions {
     float *dielectric[4] = {}, *coat[4] = {}, *sheen[4] = {}, *film[4] = {}, *tangent[4] = {};
-    float *volume[3] = {}, *transmittance[3] = {};
+    float *volume[3] = {}, *absorption[3] = {};
 };
 
 /// Surfaces that rays have met; an array for each component.

@@ -140,7 +140,7 @@ INLINE void store_surface(mesh_extended& s, const vec3& face, const HitSurfaces&
     store_components(e.film, at, s.o_film);
     store_components(e.tangent, at, s.o_tangent);
     store_components(e.volume, at, s.o_volume);
-    store_components(e.transmittance, at, s.o_transmittance);
+    store_components(e.absorption, at, s.o_absorption);
 }
 
 template <class Shader, class Uniforms>

@@ -1,5 +1,6 @@
 #include "easypbr/render/drawables/draw_list.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "easypbr/scene/normals.h"
@@ -229,6 +230,12 @@ DrawList DrawList::as_casters(bool splats) const {
     return casters;
 }
 
+Vec3 absorption_of(const Material& material) {
+    if (!(material.thickness > 0) || !std::isfinite(material.attenuation_distance)) return Vec3::Zero();
+    const Vec3 logarithm = material.attenuation_color.cwiseMax(1e-30f).array().log();
+    return -logarithm / material.attenuation_distance;
+}
+
 DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settings, const Material& textures,
                    const ShaderFiles& shader_files) {
     DrawList list;
@@ -257,9 +264,12 @@ DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settin
         // for each would draw them all.
         const bool apart = kind == DrawMode::mesh || kind == DrawMode::points;
         const bool in_layers = !apart || settings.transparency.mode == TransparencyMode::layers;
-        for (DrawItem& item : of_kind)
+        for (DrawItem& item : of_kind) {
             item.layered = (item.alpha == AlphaMode::blend && in_layers) ||
                            (apart && item.kind == SurfaceKind::lit && item.material.transmits());
+            // What has the alpha of the cutoff is there (glTF 2.0, 3.9.4). Filters of textures round alpha.
+            item.material.alpha_cutoff = std::max(item.material.alpha_cutoff - 1e-6f, 0.0f);
+        }
     }
     return list;
 }

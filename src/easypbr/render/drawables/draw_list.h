@@ -130,6 +130,9 @@ using ShaderFiles = std::map<std::string, std::string>;
 DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settings, const Material& textures,
                    const ShaderFiles& shader_files = {});
 
+/// -ln(transmittance) of a material's volume, per world unit; 0 where nothing is absorbed.
+Vec3 absorption_of(const Material& material);
+
 /// A material with the settings' overrides applied.
 Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures);
 

@@ -65,7 +65,7 @@ struct PathExtensions {
           film(room),
           tangent(room),
           volume(room),
-          transmittance(room) {}
+          absorption(room) {}
 
     template <class Stream>
     void read_by(Stream& stream) const {
@@ -75,7 +75,7 @@ struct PathExtensions {
         film.read_by(stream.v_film);
         tangent.read_by(stream.v_tangent);
         volume.read_by(stream.v_volume);
-        transmittance.read_by(stream.v_transmittance);
+        absorption.read_by(stream.v_absorption);
     }
     /// The arrays from one of them on.
     native::HitExtensions written_from(size_t first) {
@@ -86,7 +86,7 @@ struct PathExtensions {
         film.written_by(to.film, first);
         tangent.written_by(to.tangent, first);
         volume.written_by(to.volume, first);
-        transmittance.written_by(to.transmittance, first);
+        absorption.written_by(to.absorption, first);
         return to;
     }
     void copy(size_t to, const PathExtensions& from, size_t i) {
@@ -96,11 +96,11 @@ struct PathExtensions {
         film.set(to, from.film.at(i));
         tangent.set(to, from.tangent.at(i));
         volume.set(to, from.volume.at(i));
-        transmittance.set(to, from.transmittance.at(i));
+        absorption.set(to, from.absorption.at(i));
     }
 
     PathVectors<4> dielectric, coat, sheen, film, tangent;
-    PathVectors<3> volume, transmittance;
+    PathVectors<3> volume, absorption;
 };
 
 /// Of a path at a surface with extensions.

@@ -111,12 +111,6 @@ float coverage_at(const DrawItem& item, int element, float u, float v) {
     return opacity;
 }
 
-Vec3 absorption_of(const Material& material) {
-    if (!(material.thickness > 0) || !std::isfinite(material.attenuation_distance)) return Vec3::Zero();
-    const Vec3 logarithm = material.attenuation_color.cwiseMax(1e-30f).array().log();
-    return -logarithm / material.attenuation_distance;
-}
-
 Passage passage_at(const DrawItem& item, int element, float u, float v) {
     Passage passage;
     passage.coverage = coverage_at(item, element, u, v);

@@ -32,8 +32,6 @@ struct Passage {
     }
 };
 Passage passage_at(const DrawItem& item, int element, float u, float v);
-/// Of a material's volume, per world unit; 0 where nothing is absorbed.
-Vec3 absorption_of(const Material& material);
 /// Part of a ray that an element stops: 1 for opaque ones, 0 in the holes of masked ones, and for others what
 /// they take from light, each face of a volume by half of its thickness. Of faces at barycentric coordinates,
 /// met at this cosine to their normal; of others by their material.

@@ -70,14 +70,6 @@ Vec4 with_w(const Vec3& v, float w) {
     return {v.x(), v.y(), v.z(), w};
 }
 
-/// What one thickness leaves of light, as logarithms.
-Vec3 log_transmittance(const Material& m, float thickness) {
-    if (!(thickness > 0) || !std::isfinite(m.attenuation_distance)) return Vec3::Zero();
-    // e^-80 is nothing, and a number.
-    const Vec3 per_distance = m.attenuation_color.cwiseMax(1e-30f).array().log();
-    return (per_distance * (thickness / m.attenuation_distance)).cwiseMax(-80.0f);
-}
-
 void set_extensions(ShaderInputs& values, const ResolvedSettings& resolved, const DrawItem& item) {
     const Material& m = item.material;
     values.set("u_coat", Vec3(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale));
@@ -91,7 +83,7 @@ void set_extensions(ShaderInputs& values, const ResolvedSettings& resolved, cons
     const float thickness = m.thickness * float(item.scale());
     // What reflects all does not refract.
     values.set("u_volume", Vec4(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f, m.dispersion));
-    values.set("u_attenuation", log_transmittance(m, thickness));
+    values.set("u_absorption", absorption_of(m));
     values.set("u_up", Vec3(parse_up(resolved.settings.camera.up).cast<float>()));
 }
 
