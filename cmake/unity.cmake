@@ -1,7 +1,7 @@
-# How many sources one unit of a unity build holds: CMAKE_UNITY_BUILD_BATCH_SIZE, or a few more where a unit of the three
-# or fewer that are left over would read all headers again.
+# How many sources one unit of a unity build holds: UNITY_BUILD_BATCH_SIZE of the target, or a few more where a unit of no more
+# than a fifth of that would be left over, which reads all headers again; then evenly many in each.
 function(balance_unity_batches)
-  if(NOT CMAKE_UNITY_BUILD OR NOT CMAKE_UNITY_BUILD_BATCH_SIZE)
+  if(NOT CMAKE_UNITY_BUILD)
     return()
   endif()
   get_directory_property(targets BUILDSYSTEM_TARGETS)
@@ -15,7 +15,11 @@ function(balance_unity_batches)
         math(EXPR count "${count} + 1")
       endif()
     endforeach()
-    math(EXPR units "(${count} + ${CMAKE_UNITY_BUILD_BATCH_SIZE} - 4) / ${CMAKE_UNITY_BUILD_BATCH_SIZE}")
+    get_target_property(size ${target} UNITY_BUILD_BATCH_SIZE)
+    if(NOT size)
+      continue()
+    endif()
+    math(EXPR units "(${count} + ${size} - 1 - ${size} / 5) / ${size}")
     if(units GREATER 0)
       math(EXPR batch "(${count} + ${units} - 1) / ${units}")
       set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${batch})

@@ -61,10 +61,11 @@ void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second)
     second.x = pack_reflectance(e.f0);
     second.y = packHalf2x16(vec2(e.film_thickness, 0.0)) |
                packUnorm4x8(vec4(0.0, 0.0, pack_ior(e.film_ior), pack_ior(e.ior)));
-    // The length after which 1/e is left of the colour that is absorbed most, and the other absorptions as parts of that.
+    // The length after which 1/e is left of the colour that is absorbed most, and the absorptions as parts of that one:
+    // fourth roots tell small ones from each other.
     float most = max(e.absorption.r, max(e.absorption.g, e.absorption.b));
     second.z = packUnorm2x16(pack_lengths(vec2(e.thickness, most > 0.0 ? 1.0 / most : 0.0)));
-    second.w = packUnorm4x8(vec4(sqrt(e.absorption / max(most, 1e-30)), e.transmission));
+    second.w = packUnorm4x8(vec4(sqrt(sqrt(e.absorption / max(most, 1e-30))), e.transmission));
 }
 
 Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
@@ -93,7 +94,8 @@ Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
     vec2 lengths = unpack_lengths(unpackUnorm2x16(second.z));
     e.thickness = lengths.x;
     v = unpackUnorm4x8(second.w);
-    e.absorption = lengths.y > 0.0 ? v.rgb * v.rgb / lengths.y : vec3(0.0);
+    vec3 root = v.rgb * v.rgb;
+    e.absorption = lengths.y > 0.0 ? root * root / lengths.y : vec3(0.0);
     e.transmission = v.a;
     return e;
 }

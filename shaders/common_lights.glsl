@@ -5,6 +5,9 @@
 #feature SHADOWS has_shadows
 #feature SHADOW_CUBES has_shadow_cubes
 
+// Grazing light sees planes at most this steep (86.5 degrees): their depths are not to be extrapolated further.
+const float least_cosine = 0.06;
+
 #ifdef SHADOWS  // A declared block counts as used. And compiling filters that no one calls takes as long as all else.
 #include "common_shadow.glsl"
 #else

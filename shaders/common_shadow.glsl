@@ -17,8 +17,6 @@ struct Receiver {
     float reach;  // how much nearer to the light a caster can be
 };
 
-// Grazing light sees planes at most this steep (86.5 degrees): their depths are not to be extrapolated further.
-const float least_cosine = 0.06;
 // Texels that the surface is lifted: what is bent or rough below a texel must not shadow itself.
 const float lift = 0.5;
 // Roundings of positions and depths, relative.

@@ -31,11 +31,14 @@ vec3 direct(Light light, Surface s, out vec3 l) {
     return arrives * scattered(l, s);
 }
 
-// Cosines to a face below which its shadow map does not tell that it hides the light itself.
-const float grazing = 0.06;
+// 1 where `face` is the normal of a plane around the pixel, view space. The depths of a point do not tell its own.
+float plane_around(vec3 view_p, vec3 face, bool is_point) {
+    float planar = planarity(gl_FragCoord.xy, view_p, face);
+    return is_point ? 0.0 : planar;
+}
 
 // The lights of the block; `view_p` is the surface's position in view space.
-vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
+vec3 light_of_block(Surface s, vec3 view_p, bool lit, bool is_point) {
     vec3 face = s.normal, flat_normal = s.normal, radiance = vec3(0.0);
     float planar = 0.0;
     bool is_known = false;
@@ -45,7 +48,7 @@ vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
         // At edges the depths around a pixel tell of no plane, and of one without neighbours it is no number.
         bool agrees = dot(face, s.normal) >= 0.3;
         if (any_lane(lit && !agrees)) {
-            planar = planarity(gl_FragCoord.xy, view_p, flat_normal);
+            planar = plane_around(view_p, flat_normal, is_point);
             is_known = true;
         }
         face = agrees || planar > 0.5 ? face : s.normal;
@@ -56,14 +59,15 @@ vec3 light_of_block(Surface s, vec3 view_p, bool lit) {
         if (has_shadows && i >= u_plain_lights) {
             bool needed = lit && any(greaterThan(light, vec3(0.0)));
             light *= shadow_of(i, s.position, face, needed);
-            // Normals that are bent or interpolated may face a light behind the surface.
+            // Normals that are bent or interpolated may face a light behind the surface, which the map does not tell: the
+            // surface itself is what hides it.
             float cosine = dot(face, l);
             bool behind = needed && cosine < 0.0 && dot(s.normal, l) > 0.0;
             if (any_lane(behind && !is_known)) {
-                planar = planarity(gl_FragCoord.xy, view_p, flat_normal);
+                planar = plane_around(view_p, flat_normal, is_point);
                 is_known = true;
             }
-            light *= behind && planar > 0.5 ? max(1.0 + cosine / grazing, 0.0) : 1.0;
+            light *= behind && planar > 0.5 ? max(1.0 + cosine / least_cosine, 0.0) : 1.0;
         }
         radiance += light;
     }
@@ -113,7 +117,7 @@ void main() {
     }
     s.roughness = light_roughness;
     s.alpha = light_roughness * light_roughness;
-    radiance += light_of_block(s, view_p, lit);
+    radiance += light_of_block(s, view_p, lit, is_lit_point(material.w));
     float keep = lit && u_first_block > 0.5 ? kept_below(s) : 1.0;
     write_light((lit ? radiance : vec3(0.0)) + keep * emission, coverage, keep);
 }

@@ -202,7 +202,7 @@ inline constexpr struct {
              {"u_eye_dome", {0.01f, 1.5f}},
              {"u_film", {0.7f, 1.4f, 100, 700}},
              {"u_volume", {0.6f, 0.4f, 1.5f, 0.3f}},
-             {"u_attenuation", {-0.5f, -1, -0.2f}},
+             {"u_absorption", {0.5f, 1, 0.2f}},
              {"u_always", {0}}};
 inline constexpr struct {
     std::string_view name;

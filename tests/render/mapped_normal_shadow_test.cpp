@@ -94,5 +94,58 @@ TEST(MappedNormalShadows, SheetsHideLampsBehindThem) {
                 }
 }
 
+// Just behind the plane the light fades out over 3.4 degrees, which shadow maps do not resolve. 0.01: 8 bits
+// of normals.
+TEST(MappedNormalShadows, LampsFadeBehindSheets) {
+    for (const double below : {1.0, 2.0, 3.0}) {
+        const double angle = radians(below);
+        Scene scene;
+        scene.show(tilted(60), "square");
+        scene.set_light(
+            "sun", lamp(LightType::directional, Vec3(float(std::cos(angle)), 0, -float(std::sin(angle)))));
+        app::Session session = session_of(scene, ShadowMode::soft);
+        const double most = 0.8 * std::cos(radians(30 + below)) * (1 - std::sin(angle) / 0.06);
+        EXPECT_LE(render_linear(session).at<float>(16, 16)[0], most + 0.01) << below;
+    }
+}
+
+// The pixels of a point are at one depth, which does not tell its face: a lamp that its normal is turned to
+// shines on it, from behind the picture's plane, too.
+TEST(MappedNormalShadows, PointsAreLitByTheirNormals) {
+    Array3f::Dense V = Array3f::Dense::Zero(1, 3), N(1, 3);
+    N << float(std::sin(radians(80))), 0, float(std::cos(radians(80)));
+    MeshData data;
+    data.V = Array3f(V);
+    data.N = Array3f(N);
+    Material m;
+    m.base_color = Vec3::Constant(0.8f);
+    m.metallic = 0;
+    m.roughness = 1;
+    data.materials = {m};
+    Mesh cloud(data);
+    Style style;
+    style.mode = DrawMode::points;
+    style.point_size = 16.0f;  // pixels
+    cloud.set_style(style);
+    const double around = radians(120);
+    for (const bool native : {true, false})
+        for (const ShadowMode mode : modes) {
+            Scene scene;
+            scene.show(cloud, "cloud");
+            scene.set_light("sun", lamp(LightType::directional,
+                                        Vec3(float(std::sin(around)), 0, float(std::cos(around)))));
+            app::Session session = session_of(scene, mode);
+            session.allow_native_shading(native);
+            session.allow_native_geometry(native);
+            const Image shadowed = render_linear(session);
+            session.settings().shadows.enabled = false;
+            const Image plain = render_linear(session);
+            EXPECT_GT(plain.at<float>(16, 16)[0], 0.5);
+            for (const int x : {13, 16, 19})
+                EXPECT_EQ(shadowed.at<float>(x, 16)[0], plain.at<float>(x, 16)[0])
+                    << native << ", mode " << int(mode);
+        }
+}
+
 }  // namespace
 }  // namespace easypbr::mapped_normal_shadow_test

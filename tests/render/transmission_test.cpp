@@ -76,11 +76,16 @@ TEST(Transmission, WhatIsWithinIsSeen) {
 // What a volume absorbs on the way through it: Beer's law for the refracted chord of a sphere, whatever the
 // thickness that only says that it is a volume.
 TEST(Transmission, VolumesAbsorbAlongTheRefractedPath) {
-    for (const float thickness : {1e-4f, 0.01f, 1.0f, 100.0f, 1e4f}) {
+    const std::pair<float, Vec3> volumes[] = {
+        {1e-4f, {0.25f, 0.5f, 1}}, {0.01f, {0.25f, 0.5f, 1}}, {1, {0.25f, 0.5f, 1}},   {1, {0.25f, 0.5f, 0}},
+        {1, {0.93f, 0.5f, 0}},     {100, {0.25f, 0.5f, 1}},   {1e4f, {0.25f, 0.5f, 1}}};
+    for (const auto& volume : volumes) {
+        const float thickness = volume.first;
+        const Vec3& color = volume.second;
         Scene scene;
         scene.show(ball(glass([&](Material& m) {
                        m.thickness = thickness;
-                       m.attenuation_color = Vec3(0.25f, 0.5f, 1);
+                       m.attenuation_color = color;
                        m.attenuation_distance = 2;
                    })),
                    "ball");
@@ -93,7 +98,7 @@ TEST(Transmission, VolumesAbsorbAlongTheRefractedPath) {
                            const double cosine = -ray.direction.dot(n), F = schlick(cosine, 0.04);
                            const double chord = 2 * std::sqrt(1 - (1 - cosine * cosine) / (1.5 * 1.5));
                            for (int c = 0; c < 2; ++c) {
-                               const double through = std::pow(c == 0 ? 0.25 : 0.5, chord / 2);
+                               const double through = std::pow(double(color[c]), chord / 2);
                                // Absorptions have 8 bits, and the back is found in the picture.
                                ASSERT_NEAR(radiance[c], F + (1 - F) * through, 0.02)
                                    << cosine << ", thickness " << thickness;

@@ -1,6 +1,5 @@
 #include "easypbr/render/drawables/draw_list.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "easypbr/scene/normals.h"
@@ -268,7 +267,7 @@ DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settin
             item.layered = (item.alpha == AlphaMode::blend && in_layers) ||
                            (apart && item.kind == SurfaceKind::lit && item.material.transmits());
             // What has the alpha of the cutoff is there (glTF 2.0, 3.9.4). Filters of textures round alpha.
-            item.material.alpha_cutoff = std::max(item.material.alpha_cutoff - 1e-6f, 0.0f);
+            item.material.alpha_cutoff *= 1 - 1e-6f;
         }
     }
     return list;

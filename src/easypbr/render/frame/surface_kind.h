@@ -10,6 +10,7 @@ namespace easypbr::render {
 enum class SurfaceKind : uint8_t {
     lit = 0,
     ground_plane = 10,     ///< lit, fading into the background
+    lit_point = 15,        ///< lit, at one depth in all of its pixels: they do not tell its face
     extended = 20,         ///< lit, with values in GBuffer::extension
     display = 51,          ///< the albedo is the picture's colour: neither light nor tone curve touch it
     eye_dome = 102,        ///< the same, shaded by eye-dome lighting
@@ -20,6 +21,11 @@ enum class SurfaceKind : uint8_t {
 
 constexpr float code_of(SurfaceKind kind) {
     return float(kind) / 255.0f;
+}
+
+/// Of points, which lit surfaces of other kinds are not.
+constexpr SurfaceKind kind_of_point(SurfaceKind kind) {
+    return kind == SurfaceKind::lit ? SurfaceKind::lit_point : kind;
 }
 
 /// Whether light of the scene falls on a pixel with this code and is what it shows.

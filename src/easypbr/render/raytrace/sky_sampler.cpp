@@ -45,9 +45,10 @@ void SkySampler::prepare(const Environment& environment, const Mat3& R_env_world
     hash_.clear();  // until all is there: it can be interrupted
     bright_ = {};
     if (environment.empty()) return;
-    Image map = environment.image();
+    const Image& image = environment.image();
+    Image map =
+        image.width() < narrowest_distribution || image.height() < lowest_distribution ? finer() : image;
     while (map.width() > widest_distribution) map = half_size(map);
-    if (map.width() < narrowest_distribution || map.height() < lowest_distribution) map = finer();
     bright_.prepare(map);
     hash_ = hash;
 }

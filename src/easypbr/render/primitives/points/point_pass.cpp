@@ -43,7 +43,7 @@ void PointPass::draw_items(const Frame& frame, std::span<const DrawItem> items, 
         program.set("u_alpha_cutoff", m.alpha_cutoff);
         if (outputs.peel) set_peel_uniforms(program, *outputs.peel, 0);
         program.set("u_towards_viewer", Vec3(world_from_view.col(2)));
-        program.set("u_material", Vec4(m.metallic, m.roughness, 1, code_of(item.kind)));
+        program.set("u_material", Vec4(m.metallic, m.roughness, 1, code_of(kind_of_point(item.kind))));
         program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
         program.set("u_sample_index", float(frame.sample_index));
         set_noise_uniforms(program, frame);

@@ -41,7 +41,7 @@ void PointSurface::resolve(const Frame& frame, const DrawItem& item,
         if (item.alpha == AlphaMode::blend) pixel.alpha = vertex_alpha(item, p.face);
         pixel.metallic = item.material.metallic;
         pixel.roughness = item.material.roughness;
-        pixel.kind = item.kind;
+        pixel.kind = kind_of_point(item.kind);
         pixel.object = uint32_t(item.object - frame.scene->objects.data());
         pixel.element = p.face;
         pixel.is_point = true;
