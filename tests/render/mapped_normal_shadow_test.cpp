@@ -1,29 +1,21 @@
 // Shadows of lamps on surfaces whose shading normals are far from those of their faces.
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "render_test.h"
+#include "tilted_normals.h"
 
 namespace easypbr::mapped_normal_shadow_test {
 namespace {
 
 /// A square in the plane z = 0 of albedo 0.8, whose mapped normals are tilted towards +x.
 Mesh tilted(double tilt_deg) {
-    const double tilt = radians(tilt_deg);
-    Image normals(2, 2, 3, PixelType::u8);
-    for (int i = 0; i < 4; ++i) {
-        uint8_t* texel = normals.at<uint8_t>(i % 2, i / 2);
-        texel[0] = uint8_t(std::lround(127.5 * (1 + std::sin(tilt))));
-        texel[1] = 128;
-        texel[2] = uint8_t(std::lround(127.5 * (1 + std::cos(tilt))));
-    }
     Material m;
     m.base_color = Vec3::Constant(0.8f);
     m.metallic = 0;
     m.roughness = 1;
     m.specular = 0;
-    m.normal_texture.image = std::make_shared<Image>(normals);
+    m.normal_texture.image = tilted_normals(radians(tilt_deg));
     return facing_square(2, m);
 }
 

@@ -6,6 +6,7 @@
 
 #include "easypbr/render/raytrace/smooth_surface.h"
 #include "render_test.h"
+#include "tilted_normals.h"
 
 namespace easypbr::path_surfaces_test {
 namespace {
@@ -94,19 +95,12 @@ TEST(PathSurfaces, CloudsLeaveContactsOfMeshesAlone) {
 // normal is turned to them. 0.01: 8 bits of the normal texture.
 TEST(PathSurfaces, LampsOnMappedNormals) {
     const double tilt = radians(55);
-    Image normals(2, 2, 3, PixelType::u8);
-    for (int i = 0; i < 4; ++i) {
-        uint8_t* texel = normals.at<uint8_t>(i % 2, i / 2);
-        texel[0] = uint8_t(std::lround(127.5 * (1 + std::sin(tilt))));
-        texel[1] = 128;
-        texel[2] = uint8_t(std::lround(127.5 * (1 + std::cos(tilt))));
-    }
     const std::function<void(Material&)> plain = [](Material&) {},
                                          extended = [](Material&m) { m.specular_color = Vec3(1, 1, 0.9f); };
     for (const auto& change : {plain, extended}) {
         Material m = matt(0.8f);
         m.specular = 0;
-        m.normal_texture.image = std::make_shared<Image>(normals);
+        m.normal_texture.image = tilted_normals(tilt);
         change(m);
         Scene scene;
         scene.show(facing_square(1, m), "square");
