@@ -283,7 +283,7 @@ std::optional<std::array<Vec3, 3>> RayScene::corner_normals(const SurfacePlace& 
 }
 
 bool RayScene::has_normal(const SurfacePlace& on, const Vec3& face, const Vec3& normal) const {
-    constexpr float least = 0.3f;
+    const float least = item_of(on.surface).has_mapped_normals() ? 0 : 0.3f;
     if (face.dot(normal) > least) return true;
     const auto corners = corner_normals(on);
     if (!corners) return false;

@@ -211,7 +211,7 @@ class RayScene {
     /// Unit normals of the corners of a face of a mesh; none where it has no others than its own.
     std::optional<std::array<Vec3, 3>> corner_normals(const SurfacePlace& on) const;
     /// Whether a normal is one of the surface, and no other's that a pixel has by rounding. An interpolated
-    /// one may lie on any side of its face.
+    /// one may lie on any side of its face, a mapped one anywhere above it.
     bool has_normal(const SurfacePlace& on, const Vec3& face, const Vec3& normal) const;
     SurfacePlace place_on(unsigned geometry, unsigned primitive, float u, float v) const;
 
