@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
@@ -36,7 +39,10 @@ class Images {
         std::vector<Entry*> wanted;
         for (size_t i = 0; i < used_.size(); ++i)
             if (used_[i].wanted && locate(i)) wanted.push_back(&used_[i]);
-        parallel_for(wanted.size(), 1, [&](size_t i) { wanted[i]->decode(); });
+        // The largest first: who begins one last works alone.
+        std::ranges::stable_sort(wanted, std::greater(), &Entry::encoded_size);
+        std::atomic<size_t> next = 0;
+        parallel_for(wanted.size(), 1, [&](size_t) { wanted[next++]->decode(); });
     }
 
     const std::shared_ptr<const Image>& image(size_t index) const { return used_[index].image; }
@@ -51,6 +57,13 @@ class Images {
         std::span<const std::byte> bytes;
         std::shared_ptr<const Image> image;
 
+        /// In bytes; 0 where that is not known.
+        uintmax_t encoded_size() const {
+            if (path.empty()) return bytes.size();
+            std::error_code unknown;
+            const uintmax_t size = std::filesystem::file_size(path, unknown);
+            return unknown ? 0 : size;
+        }
         void decode() {
             try {
                 image = std::make_shared<const Image>(path.empty() ? decode_image(bytes, name)
