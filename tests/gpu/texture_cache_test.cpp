@@ -86,10 +86,65 @@ TEST(HostTextures, HoldAllLevelsOfAllChannels) {
                     TextureCache cache;
                     SCOPED_TRACE(testing::Message() << width << " x " << height << " x " << channels
                                                     << (color ? ", colour" : ", data"));
-                    const native::Texture& host = cache.host(texture, color);
+                    const native::Texture& host =
+                        cache.host(texture, color ? TexelKind::color : TexelKind::data);
                     EXPECT_EQ(host.is_16_bit, color);
                     check(host, first_level(*image, color), wrap);
                 }
+}
+
+/// Green of which every second column is there; black that alpha hides between.
+std::shared_ptr<Image> columns(uint8_t hidden_red) {
+    auto image = std::make_shared<Image>(8, 4, 4, PixelType::u8);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 8; ++x) {
+            uint8_t* texel = image->at<uint8_t>(x, y);
+            if (x % 2 == 0) {
+                texel[1] = texel[3] = 255;
+            } else {
+                texel[0] = hidden_red;
+            }
+        }
+    return image;
+}
+
+// What alpha hides has no part in any level, and where it is interpolated it has the colour around. The
+// coverage is averaged as it is.
+TEST(HostTextures, HiddenColorsDoNotShowAtOtherLevels) {
+    Texture texture;
+    texture.image = columns(255);
+    TextureCache cache;
+    const native::Texture& host = cache.host(texture, TexelKind::covering_color);
+    for (int level = 0, width = 8; level < host.levels; ++level, width = std::max(1, width / 2))
+        for (int y = 0; y < std::max(1, 4 >> level); ++y)
+            for (int x = 0; x <= width; ++x) {
+                const auto channel = [&](int c) { return texel(host, level, width, x, y, c); };
+                EXPECT_EQ(channel(0), 0u) << level;
+                EXPECT_EQ(channel(1), 65535u) << level;
+                EXPECT_EQ(channel(2), 0u) << level;
+                EXPECT_EQ(channel(3), level > 0 ? 32768u : x % 2 == 0 ? 65535u : 0u) << level;
+            }
+    // Where nothing is hidden all of them count.
+    const native::Texture& opaque = cache.host(texture, TexelKind::color);
+    EXPECT_EQ(texel(opaque, 1, 4, 0, 0, 0), 32768u);
+    EXPECT_EQ(texel(opaque, 1, 4, 0, 0, 1), 32768u);
+}
+
+// Partial alpha is a weight: three quarters of a third and a quarter of all are equal parts.
+TEST(HostTextures, AlphaWeighsColors) {
+    auto image = std::make_shared<Image>(2, 2, 4, PixelType::u8);
+    for (int i = 0; i < 4; ++i) {
+        uint8_t* texel = image->at<uint8_t>(i % 2, i / 2);
+        texel[i < 3 ? 0 : 1] = 255;
+        texel[3] = i < 3 ? 85 : 255;
+    }
+    Texture texture;
+    texture.image = image;
+    TextureCache cache;
+    const native::Texture& host = cache.host(texture, TexelKind::covering_color);
+    EXPECT_EQ(texel(host, 1, 1, 0, 0, 0), 32768u);
+    EXPECT_EQ(texel(host, 1, 1, 0, 0, 1), 32768u);
+    EXPECT_EQ(texel(host, 1, 1, 0, 0, 3), 32768u);
 }
 
 }  // namespace

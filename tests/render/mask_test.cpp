@@ -1,4 +1,5 @@
 // Cut-outs that are smaller than a pixel.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -51,6 +52,47 @@ TEST(Mask, MeanOfSamplesIsTheCoverage) {
                 for (int x = 4; x < 28; ++x) sum += double(picture.at<float>(x, y)[3]);
             EXPECT_NEAR(sum / (24 * 24), coverage_of(side), 0.02) << "side " << side << ", paths " << paths;
         }
+}
+
+// Colours that alpha hides are not seen from anywhere, nor between texels: not natively, by the driver, or in
+// paths.
+TEST(Mask, HiddenColorsAreNotSeen) {
+    for (const AlphaMode mode : {AlphaMode::mask, AlphaMode::blend})
+        for (const float tiles : {0.5f, 8.37f, 60.0f})
+            for (const int way : {0, 1, 2}) {
+                Material m = squares(4, tiles);
+                auto image = std::make_shared<Image>(*m.base_color_texture.image);
+                for (int y = 0; y < 64; ++y)
+                    for (int x = 0; x < 64; ++x) {
+                        uint8_t* texel = image->at<uint8_t>(x, y);
+                        texel[texel[3] > 0 ? 0 : 1] = texel[2] = 0;
+                    }
+                m.base_color_texture.image = image;
+                m.alpha_mode = mode;
+                m.alpha_cutoff = 0.2f;
+                m.base_color = Vec3::Ones();
+                Scene scene;
+                scene.show(facing_square(1, m), "square");
+                app::Session session = plain_session(scene, 32);
+                session.allow_native_shading(way != 1);
+                session.allow_native_geometry(way != 1);
+                session.settings().path.enabled = way == 2;
+                look_from(session, Vec3d(0, 0, 3));
+                const Image picture = render_linear(session, 4);
+                float most_red = 0, green = 0, alpha = 0;
+                for (int y = 8; y < 24; ++y)
+                    for (int x = 8; x < 24; ++x) {
+                        const float* pixel = picture.at<float>(x, y);
+                        most_red = std::max(most_red, pixel[0]);
+                        green += pixel[1];
+                        alpha += pixel[3];
+                    }
+                SCOPED_TRACE(testing::Message() << int(mode) << ", " << tiles << " tiles, way " << way);
+                EXPECT_EQ(most_red, 0);
+                // 0.003: roundings to 8 and 16 bits.
+                EXPECT_NEAR(green / alpha, 1, 0.003);
+                EXPECT_GT(alpha, 32);
+            }
 }
 
 // glTF 2.0, 3.9.4: what has an alpha of at least the cutoff is there, natively, by the driver and in paths.

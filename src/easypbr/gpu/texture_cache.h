@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -15,13 +16,19 @@
 
 namespace easypbr::gpu {
 
-/// Textures by image, use (colour or data) and sampling.
+/// What the channels of an image hold, by which its mip levels are made.
+enum class TexelKind : uint8_t {
+    data,
+    color,           ///< sRGB, averaged as light
+    covering_color,  ///< the same, weighted by alpha: colours that alpha hides do not show at other levels
+};
+
+/// Textures by image, kind and sampling.
 class TextureCache {
   public:
-    /// `color` images are sRGB (decoded before filtering), others are data.
-    const gl::Texture& get(const Texture& texture, bool color);
+    const gl::Texture& get(const Texture& texture, TexelKind kind);
     /// The same for native shaders.
-    const native::Texture& host(const Texture& texture, bool color);
+    const native::Texture& host(const Texture& texture, TexelKind kind);
 
     /// Drops what was not asked for since the last call.
     void evict_unused() {
@@ -30,7 +37,7 @@ class TextureCache {
     }
 
   private:
-    using Key = std::tuple<const Image*, bool, Wrap, Wrap, Filter>;
+    using Key = std::tuple<const Image*, TexelKind, Wrap, Wrap, Filter>;
     struct Entry {
         std::shared_ptr<const Image> image;  ///< keeps the address from being used again
         gl::Texture texture;

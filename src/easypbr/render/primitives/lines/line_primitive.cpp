@@ -193,7 +193,7 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
             const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normals);
             if (buffers.count == 0) continue;
             if (reads_table(item, stroke))
-                textures_.get(item.material.base_color_texture, true).bind(table_unit);
+                textures_.get(item.material.base_color_texture, gpu::TexelKind::color).bind(table_unit);
             program.set("u_color", stroke.color_or_none());
             set_colors(program, item, stroke);
             gl::draw_quads(state, buffers.array, buffers.count);
@@ -237,7 +237,7 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         for (const Stroke& stroke : strokes_of(item)) {
             ShaderInputs values = of_item;
             if (reads_table(item, stroke))
-                values.set("u_table", textures_.host(item.material.base_color_texture, true));
+                values.set("u_table", textures_.host(item.material.base_color_texture, gpu::TexelKind::color));
             set_colors(values, item, stroke);
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normals);
             native::draw_lines(values.native(transfers), region,

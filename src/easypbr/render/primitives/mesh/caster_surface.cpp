@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "easypbr/render/primitives/mesh/mesh_material.h"
+
 namespace easypbr::render {
 
 bool casts_by_texture(const DrawItem& item) {
@@ -46,10 +48,11 @@ ShaderInputs caster_inputs(const DrawItem& item, gpu::TextureCache& textures, bo
     const auto set = [&](const Texture& texture, const std::string& name) {
         if (!texture) return;
         const bool is_color = &texture == &m.base_color_texture;
+        const gpu::TexelKind kind = texel_kind(item, texture, is_color ? TexelUse::color : TexelUse::number);
         if (native)
-            values.set("u_" + name + "_texture", textures.host(texture, is_color));
+            values.set("u_" + name + "_texture", textures.host(texture, kind));
         else
-            values.set("u_" + name + "_texture", textures.get(texture, is_color));
+            values.set("u_" + name + "_texture", textures.get(texture, kind));
         values.set("u_" + name + "_uv", texture.uv_transform);
         if (!is_color)
             values.set("u_" + name + "_channel", Vec4(Vec4::Unit(std::clamp(texture.channel, 0, 3))));

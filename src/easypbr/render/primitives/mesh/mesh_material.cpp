@@ -89,6 +89,12 @@ void set_extensions(ShaderInputs& values, const ResolvedSettings& resolved, cons
 
 }  // namespace
 
+gpu::TexelKind texel_kind(const DrawItem& item, const Texture& texture, TexelUse use) {
+    if (use != TexelUse::color) return gpu::TexelKind::data;
+    const bool covers = &texture == &item.material.base_color_texture && item.alpha != AlphaMode::opaque;
+    return covers ? gpu::TexelKind::covering_color : gpu::TexelKind::color;
+}
+
 void add_mesh_defines(const DrawItem& item, bool normals_agree, std::vector<std::string>& defines) {
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (item.style.flat || (item.two_sided && !normals_agree)) defines.emplace_back("FACE_NORMAL");
@@ -130,11 +136,11 @@ ShaderInputs material_inputs(const MaterialContext& context, const DrawItem& ite
     if (is_extended(context, item)) set_extensions(values, *context.resolved, item);
     for_each_texture(context, item, [&](const TextureUse& use, size_t index) {
         const Texture& texture = m.*use.row.texture;
-        const bool color = use.row.use == TexelUse::color;
+        const gpu::TexelKind kind = texel_kind(item, texture, use.row.use);
         if (native)
-            values.set(use.sampler, textures.host(texture, color));
+            values.set(use.sampler, textures.host(texture, kind));
         else
-            values.set(use.sampler, textures.get(texture, color));
+            values.set(use.sampler, textures.get(texture, kind));
         if (!use.channel.empty()) values.set(use.channel, channel_mask(texture.channel));
         values.set("u_uv_transform[" + std::to_string(index) + "]", texture.uv_transform);
     });

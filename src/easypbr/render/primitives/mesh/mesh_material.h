@@ -5,6 +5,7 @@
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/screen_shader.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::render {
 
@@ -15,6 +16,9 @@ struct MaterialContext {
     const ResolvedSettings* resolved = nullptr;  ///< needed with extensions
     bool occlusion = true;                       ///< the material's is read; paths find all of it themselves
 };
+
+/// How the mip levels of a texture of the item's material are made. Alpha counts where it hides something.
+gpu::TexelKind texel_kind(const DrawItem& item, const Texture& texture, TexelUse use);
 
 /// Macros for what the vertices hold and on which side the surface is seen. `normals_agree`: the winding
 /// tells the side of the mesh's normals.
