@@ -283,7 +283,9 @@ std::optional<std::array<Vec3, 3>> RayScene::corner_normals(const SurfacePlace& 
 }
 
 bool RayScene::has_normal(const SurfacePlace& on, const Vec3& face, const Vec3& normal) const {
-    const float least = item_of(on.surface).has_mapped_normals() ? 0 : 0.3f;
+    // The ground has no surface, nor a map.
+    const bool is_mapped = on.surface >= 0 && item_of(on.surface).has_mapped_normals();
+    const float least = is_mapped ? 0 : 0.3f;
     if (face.dot(normal) > least) return true;
     const auto corners = corner_normals(on);
     if (!corners) return false;
