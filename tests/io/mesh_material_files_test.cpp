@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
+#include <string_view>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -177,6 +179,89 @@ TEST(MeshMaterialFiles, ObjImagesAppearWithItOrNotAtAll) {
         EXPECT_THROW(Mesh(mesh).save(folder / "m.obj"), FileError);
     }
     EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+namespace {
+
+/// A triangle whose OBJ names t.png of `value`, as it is read.
+Mesh textured_triangle(const fs::path& folder, uint8_t value) {
+    io::save_image(*flat(value), folder / "t.png");
+    write_file(folder / "in.mtl", std::string_view("newmtl m\nmap_Kd t.png\n"));
+    write_file(folder / "in.obj",
+               std::string_view("mtllib in.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\n"
+                                "f 1/1 2/1 3/1\n"));
+    return Mesh(folder / "in.obj");
+}
+
+/// What t.png is replaced by; no two files are written within the steps of a file system's clock.
+void replace_texture(const fs::path& folder, uint8_t value) {
+    const auto time = fs::last_write_time(folder / "t.png");
+    io::save_image(*flat(value), folder / "t.png");
+    fs::last_write_time(folder / "t.png", time + std::chrono::seconds(5));
+}
+
+int value_in(const fs::path& mesh) {
+    const Texture texture = Mesh(mesh).snapshot()->materials.at(0).base_color_texture;
+    return texture ? int(texture.image->at<uint8_t>(1, 1)[0]) : -1;
+}
+
+}  // namespace
+
+TEST(MeshMaterialFiles, ObjNamesATextureWhileItsFileHoldsIt) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    textured_triangle(folder.path(), 10).save(folder / "out/m.obj");
+    EXPECT_NE(FileBytes(folder / "out/m.mtl").text().find("map_Kd ../t.png\n"), std::string_view::npos);
+    EXPECT_FALSE(fs::exists(folder / "out/m_base_color.png"));
+}
+
+TEST(MeshMaterialFiles, ObjWritesTexturesWhoseFilesAreGoneOrHaveChanged) {
+    const TemporaryFolder folder;
+    const Mesh mesh = textured_triangle(folder.path(), 10);
+    replace_texture(folder.path(), 20);
+    mesh.save(folder / "changed.obj");
+    EXPECT_EQ(value_in(folder / "changed.obj"), 10);
+    EXPECT_EQ(int(io::load_image(folder / "t.png").at<uint8_t>(0, 0)[0]), 20);
+    fs::remove(folder / "t.png");
+    mesh.save(folder / "gone.obj");
+    EXPECT_EQ(value_in(folder / "gone.obj"), 10);
+    // Of a mesh whose textures are in another state than those of the file that it is saved as.
+    const Mesh saved(folder / "gone.obj");
+    const fs::path painted = folder / "gone_base_color.png";
+    io::save_image(*flat(30), painted);
+    fs::last_write_time(painted, fs::last_write_time(painted) + std::chrono::seconds(5));
+    saved.save(folder / "gone.obj");
+    EXPECT_EQ(value_in(folder / "gone.obj"), 10);
+    EXPECT_EQ(int(io::load_image(painted).at<uint8_t>(0, 0)[0]), 30) << "what a person painted stays";
+}
+
+TEST(MeshMaterialFiles, PlyWarnsOfATextureWhoseFileHasChanged) {
+    const TemporaryFolder folder;
+    const Mesh mesh = textured_triangle(folder.path(), 10);
+    std::string warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings += std::string(message) + "\n"; });
+    mesh.save(folder / "same.ply");
+    EXPECT_EQ(warnings.find("its file"), std::string::npos) << warnings;
+    replace_texture(folder.path(), 20);
+    mesh.save(folder / "changed.ply");
+    set_log_sink({});
+    EXPECT_NE(warnings.find("changed.ply: the texture is left out: its file " + (folder / "t.png").string() +
+                            " is gone or has changed"),
+              std::string::npos)
+        << warnings;
+    EXPECT_NE(FileBytes(folder / "same.ply").text().find("TextureFile"), std::string_view::npos);
+    EXPECT_EQ(FileBytes(folder / "changed.ply").text().find("TextureFile"), std::string_view::npos);
+}
+
+TEST(MeshMaterialFiles, FilesOfMeshesAndTexturesAreKeptAsAbsolutePaths) {
+    const TemporaryFolder folder;
+    textured_triangle(folder.path(), 10);
+    const auto mesh = Mesh(fs::relative(folder / "in.obj")).snapshot();
+    EXPECT_TRUE(mesh->source.is_absolute()) << mesh->source;
+    EXPECT_TRUE(fs::equivalent(mesh->source, folder / "in.obj"));
+    const fs::path texture = mesh->materials.at(0).base_color_texture.path;
+    EXPECT_TRUE(texture.is_absolute()) << texture;
+    EXPECT_TRUE(fs::equivalent(texture, folder / "t.png"));
 }
 
 TEST(MeshMaterialFiles, PlySaysWhichTexturesItLeavesOut) {

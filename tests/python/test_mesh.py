@@ -1,5 +1,7 @@
 import copy
 import gc
+import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -283,6 +285,37 @@ def test_textures_are_arrays_or_files(square, tmp_path):
     assert mesh.material.base_color_texture is None
     with pytest.raises(FileNotFoundError.__base__, match="missing.png"):
         mesh.material.normal_texture = tmp_path / "missing.png"
+
+
+@pytest.mark.parametrize("name", ["c.obj", "c.ply"])
+def test_saved_meshes_name_the_texture_from_any_folder(tmp_path, monkeypatch, name):
+    red = np.full((2, 2, 3), (255, 0, 0), np.uint8)
+    easypbr.save_image(red, tmp_path / "red.png")
+    (tmp_path / "out").mkdir()
+    monkeypatch.chdir(tmp_path)
+    given = easypbr.shapes.plane()
+    given.material.base_color_texture = Path("red.png")
+    given.save("b.obj")
+    read = Mesh("b.obj")
+    assert Path(read.source) == tmp_path / "b.obj"
+    monkeypatch.chdir(tmp_path / "out")
+    # One whose texture was given, one whose texture was read.
+    for mesh in (given, read):
+        mesh.save(name)
+        assert b" ../red.png\n" in Path(name).with_suffix(".mtl" if name == "c.obj" else ".ply").read_bytes()
+        np.testing.assert_array_equal(Mesh(name).material.base_color_texture, red)
+
+
+def test_a_pickle_knows_in_which_state_the_file_of_a_texture_was(tmp_path):
+    easypbr.save_image(np.full((2, 2, 3), 10, np.uint8), tmp_path / "t.png")
+    mesh = easypbr.shapes.plane()
+    mesh.material.base_color_texture = tmp_path / "t.png"
+    mesh = pickle.loads(pickle.dumps(mesh))
+    mesh.save(tmp_path / "same.obj")
+    assert "map_Kd t.png" in (tmp_path / "same.mtl").read_text()
+    easypbr.save_image(np.full((3, 3, 3), 20, np.uint8), tmp_path / "t.png")
+    mesh.save(tmp_path / "changed.obj")
+    assert (Mesh(tmp_path / "changed.obj").material.base_color_texture == 10).all()
 
 
 def test_positions_alone_are_a_cloud(square):

@@ -3,8 +3,10 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "easypbr/core/file_state.h"
 #include "easypbr/core/image.h"
 #include "easypbr/core/math.h"
 #include "easypbr/scene/array.h"
@@ -20,7 +22,11 @@ enum class AlphaMode { opaque, mask, blend };
 /// the glTF loader flips v). Empty when `image` is null.
 struct Texture {
     std::shared_ptr<const Image> image;
-    std::string path;  ///< where the image came from, for messages and saving; may be empty
+    /// Where the image came from, for messages and saving; may be empty. Absolute where the library read it.
+    std::string path;
+    /// Of the file at `path` when the image was read; none: not known. Files of meshes name the file while it
+    /// is in this state.
+    std::optional<FileState> file_state = {};
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     Filter filter = Filter::linear;
     Mat3 uv_transform = Mat3::Identity();  ///< applied to (u, v, 1)

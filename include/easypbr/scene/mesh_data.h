@@ -73,7 +73,7 @@ struct RestShape {
 /// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).
 struct MeshData {
     std::string name;
-    std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
+    std::filesystem::path source;  ///< the file it was read from, absolute; empty for a mesh made in memory
 
     Array3f V;   ///< n x 3 positions, local: offset + V are the coordinates that the mesh was given
     Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn

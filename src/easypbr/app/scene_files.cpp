@@ -49,6 +49,15 @@ bool is_missing_light(const Scene& scene, const std::string& light) {
                                [&](const std::string& object) { return light.starts_with(object + "/"); });
 }
 
+/// As short as a person writes it: relative to the working folder where the file lies in it, unless the name
+/// would pass for an option.
+fs::path short_path(const fs::path& file) {
+    std::error_code failed;
+    const fs::path relative = file.lexically_relative(fs::current_path(failed));
+    const bool is_outside = failed || relative.empty() || *relative.begin() == "..";
+    return is_outside || relative.string().starts_with('-') ? file : relative;
+}
+
 /// A word of a POSIX shell's command line.
 std::string shell_word(const std::string& text) {
     const auto is_plain = [](char c) {
@@ -205,7 +214,7 @@ void SceneFiles::save_settings(const fs::path& path, Vec2i size) {
         return notifications_.add(
             fmt::format("Saved {}; nothing that is shown was read from a file", path.string()));
     std::string command = "easypbr render";
-    for (const fs::path& file : files) command += " " + shell_word(file.string());
+    for (const fs::path& file : files) command += " " + shell_word(short_path(file).string());
     command += fmt::format(" --settings {} -o {}", shell_word(path.string()),
                            shell_word(fs::path(path).replace_extension(".png").string()));
     const std::vector<std::string> without = unsaved();

@@ -112,7 +112,7 @@ void InputFile::look() {
     if (file_.get() < 0 || ::fstat(file_.get(), &info) != 0) fail_read(path_.string(), std::strerror(errno));
     if (!S_ISREG(info.st_mode))
         fail_read(path_.string(), fmt::format("it is {}, not a regular file", kind_of(info.st_mode)));
-    size_ = size_t(info.st_size);
+    state_ = {size_t(info.st_size), change_time(info)};
 }
 
 void InputFile::read(size_t from, std::span<std::byte> out) const {
@@ -124,7 +124,7 @@ void InputFile::read(size_t from, std::span<std::byte> out) const {
             fail_read(path_.string(),
                       fmt::format("it was truncated while it was read: it had {} bytes, now it "
                                   "ends at byte {}",
-                                  size_, from));
+                                  size(), from));
         from += size_t(count);
         out = out.subspan(size_t(count));
     }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "easypbr/core/file_state.h"
 #include "easypbr/core/guarded_map.h"
 
 namespace easypbr {
@@ -46,7 +47,9 @@ class InputFile {
     const fs::path& path() const { return path_; }
     int descriptor() const { return file_.get(); }
     /// Bytes that the file had when it was opened.
-    size_t size() const { return size_; }
+    size_t size() const { return size_t(state_.size); }
+    /// As it was when it was opened.
+    const FileState& state() const { return state_; }
     /// Reads the bytes [from, from + out.size()). Throws FileError when the file has become shorter or cannot
     /// be read. Thread-safe.
     void read(size_t from, std::span<std::byte> out) const;
@@ -56,7 +59,7 @@ class InputFile {
 
     fs::path path_;
     Descriptor file_;
-    size_t size_ = 0;
+    FileState state_;
 };
 
 /// A file's bytes: a copy, or where they are many a guarded map. Move-only.

@@ -5,7 +5,7 @@
 
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
-#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/texture_loader.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/pickle.h"
@@ -55,8 +55,7 @@ Texture texture_from_python(nb::handle object, const char* name) {
     if (object.is_none()) return texture;
     if (is_path(object)) {
         const auto path = nb::cast<std::filesystem::path>(object);
-        texture.path = path.string();
-        texture.image = released([&] { return std::make_shared<const Image>(io::load_image(path)); });
+        texture = released([&] { return io::load_texture(path); });
     } else {
         texture.image = std::make_shared<const Image>(to_image(object, name));
     }
@@ -111,7 +110,7 @@ void set_shader(MaterialHandle& m, nb::handle object) {
     if (nb::isinstance<nb::str>(object))
         own.text = nb::cast<std::string>(object);
     else if (is_path(object))
-        own.path = nb::cast<std::filesystem::path>(object).string();
+        own.path = std::filesystem::absolute(nb::cast<std::filesystem::path>(object)).string();
     else if (!object.is_none())
         throw ArgumentError("material.shader: expected GLSL as text, the path of a file or None");
     if (!own && !object.is_none())

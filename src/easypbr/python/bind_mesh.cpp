@@ -393,7 +393,7 @@ void bind_mesh(nb::module_& module) {
             [](Mesh& m, const std::string& name) { m.edit([&](MeshData& data) { data.name = name; }); })
         .def_prop_ro(
             "source", [](const Mesh& m) { return m.snapshot()->source.string(); },
-            "The file it was read from; empty for a mesh made in memory.")
+            "The file it was read from, as an absolute path; empty for a mesh made in memory.")
         .def(
             "save", [](const Mesh& m, const fs::path& path) { released([&] { m.save(path); }); },
             nb::arg("path"), "Writes PLY, OBJ, GLB, PCD, XYZ, CSV, NPY or NPZ, by the extension.")

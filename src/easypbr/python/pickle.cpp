@@ -28,10 +28,20 @@ constexpr std::string_view style_prefix = "style.";
 template <class Object, class T>
 concept Is = std::is_same_v<std::remove_const_t<Object>, T>;
 
+template <class Archive, Is<FileState> Object>
+void exchange(Archive& archive, Object& state) {
+    archive("size", state.size);
+    auto ticks = state.time.time_since_epoch().count();
+    archive("time", ticks);
+    if constexpr (!std::is_const_v<Object>)
+        state.time = std::filesystem::file_time_type(std::filesystem::file_time_type::duration(ticks));
+}
+
 template <class Archive, Is<Texture> Object>
 void exchange(Archive& archive, Object& texture) {
     archive("image", texture.image);
     archive("path", texture.path);
+    archive("file_state", texture.file_state);
     archive.choice("wrap_u", texture.wrap_u, 3);
     archive.choice("wrap_v", texture.wrap_v, 3);
     archive.choice("filter", texture.filter, 2);

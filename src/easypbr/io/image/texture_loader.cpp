@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
@@ -21,6 +22,25 @@ std::string_view without_comment(std::string_view name) {
     name = name.substr(0, end);
     const size_t last = name.find_last_not_of(" \t");
     return unquoted(name.substr(0, last == name.npos ? 0 : last + 1));
+}
+
+Texture load_texture(const fs::path& path) {
+    InputFile file(path);
+    Texture texture;
+    texture.file_state = file.state();
+    const FileBytes bytes(std::move(file));
+    texture.image = std::make_shared<const Image>(decode_image(bytes.bytes(), path.string()));
+    bytes.check();
+    texture.path = fs::absolute(path).string();
+    return texture;
+}
+
+bool is_in_file(const Texture& texture) {
+    if (texture.path.empty() || !texture.image) return !texture.path.empty();
+    std::error_code gone;
+    const fs::file_time_type time = fs::last_write_time(texture.path, gone);
+    const std::uintmax_t size = gone ? 0 : fs::file_size(texture.path, gone);
+    return !gone && (!texture.file_state || *texture.file_state == FileState{size, time});
 }
 
 std::string path_from_folder(const std::string& image_path, const fs::path& folder) {
@@ -46,8 +66,7 @@ Texture TextureLoader::load(const std::string& name) {
     if (const auto known = textures_.find(path.string()); known != textures_.end()) return known->second;
     Texture texture;
     try {
-        texture.image = std::make_shared<const Image>(load_image(path));
-        texture.path = path.string();
+        texture = load_texture(path);
     } catch (const Error& error) {
         log_warning(fmt::format("texture left out: {}", error.what()));
     }

@@ -16,6 +16,14 @@ std::string_view unquoted(std::string_view name);
 /// The same, first without a comment: '#' behind a blank and all that follows.
 std::string_view without_comment(std::string_view name);
 
+/// The image in a file as a texture with an absolute path. Throws FileError, FormatError; messages name the
+/// path as it was given.
+Texture load_texture(const fs::path& path);
+
+/// Whether the file at a texture's path holds its image: it is there and, where that is known, as it was when
+/// the image was read. Of a texture without an image: it has a path.
+bool is_in_file(const Texture& texture);
+
 /// How a mesh file in `folder` (absolute) refers to the image at `image_path`.
 std::string path_from_folder(const std::string& image_path, const fs::path& folder);
 

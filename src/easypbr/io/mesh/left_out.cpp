@@ -82,7 +82,8 @@ void add_shaders(const MeshData& mesh, std::vector<std::string>& names) {
         names.emplace_back("shaders");
 }
 
-/// PLY names the file of one texture: the base colour of a mesh with one material.
+/// PLY names the file of one texture: the base colour of a mesh with one material. A warning of its own says
+/// where the file does not hold the texture any more.
 Properties properties_of_ply(const MeshData& mesh) {
     const bool names_texture =
         mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty();

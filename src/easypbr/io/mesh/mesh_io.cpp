@@ -14,6 +14,7 @@
 #include "easypbr/core/opened_files.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/cloud_writers.h"
 #include "easypbr/io/mesh/content_format.h"
@@ -142,6 +143,17 @@ void warn_of_renamed(const MeshData& mesh, const fs::path& path) {
                                 fmt::join(renamed, ", ")));
 }
 
+/// PLY names the texture's file, which must hold what is drawn.
+void warn_of_changed_texture(const MeshData& mesh, const fs::path& path) {
+    if (mesh.materials.size() != 1) return;
+    const Texture& texture = mesh.materials[0].base_color_texture;
+    if (!texture.path.empty() && !is_in_file(texture))
+        log_warning(
+            fmt::format("{}: the texture is left out: its file {} is gone or has changed since it "
+                        "was read; OBJ and GLB are written with the texture as it was read",
+                        path.string(), texture.path));
+}
+
 std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
     if (extension == "ply") return encode_ply(mesh, fs::absolute(path).parent_path());
     if (extension == "npz") return encode_npz(mesh);
@@ -222,6 +234,7 @@ void save(const Mesh& mesh, const std::vector<std::string>& beside, const fs::pa
     names.insert(names.end(), beside.begin(), beside.end());
     warn_of_left_out(names, path, flat.name);
     if (extension == "obj") return save_obj(flat, path);
+    if (extension == "ply") warn_of_changed_texture(flat, path);
     warn_of_renamed(flat, path);
     write_file(path, encode(flat, path, extension));
 }
@@ -259,6 +272,13 @@ void show_unlit_exactly(Mesh& mesh) {
     for (Mesh child : mesh.children()) show_unlit_exactly(child);
 }
 
+/// A file is found again after the working folder has changed.
+void make_source_absolute(Mesh& mesh) {
+    const fs::path source = mesh.snapshot()->source;
+    if (source.is_relative() && !source.empty())
+        mesh.edit([&](MeshData& data) { data.source = fs::absolute(source); });
+}
+
 /// What every file takes that is read, of whatever format.
 void finish(LoadedScene& scene, const fs::path& path, const LoadOptions& options, const OpenedFiles& files) {
     if (!options.variant.empty() && scene.variants.empty())
@@ -288,6 +308,7 @@ LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
     OpenedFiles files;
     const OpenedFilesScope noted(&files);
     LoadedScene scene = read_scene(path, options);
+    make_source_absolute(scene.mesh);
     finish(scene, path, options, files);
     return scene;
 }

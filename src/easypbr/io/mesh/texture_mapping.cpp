@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/image/texture_loader.h"
 
 namespace easypbr::io {
 namespace {
@@ -117,10 +118,15 @@ std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const 
     return names;
 }
 
+const Texture* ply_texture(const MeshData& mesh) {
+    if (mesh.materials.size() != 1) return nullptr;
+    const Texture& texture = mesh.materials[0].base_color_texture;
+    return is_in_file(texture) ? &texture : nullptr;
+}
+
 const TextureMapping* texture_mapping(const MeshData& mesh, const std::string& extension) {
     if (extension == "obj") return &obj_mapping();
-    const bool has_file = mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty();
-    return extension == "ply" && has_file ? &ply_mapping() : nullptr;
+    return extension == "ply" && ply_texture(mesh) ? &ply_mapping() : nullptr;
 }
 
 }  // namespace easypbr::io

@@ -28,6 +28,10 @@ void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh);
 /// the image. No format here has filters: those other than linear count.
 std::vector<std::string> left_out_mappings(const TextureMapping& mapping, const MeshData& mesh);
 
+/// The texture that a PLY file names: the base colour of a mesh with one material, where a file holds it;
+/// null: none.
+const Texture* ply_texture(const MeshData& mesh);
+
 /// What a format has for textures, where one is written; null: none is.
 const TextureMapping* texture_mapping(const MeshData& mesh, const std::string& extension);
 

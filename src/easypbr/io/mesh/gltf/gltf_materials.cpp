@@ -11,6 +11,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/gltf/gltf_extensions.h"
 #include "easypbr/scene/material_table.h"
 
@@ -45,8 +46,8 @@ class Images {
         parallel_for(wanted.size(), 1, [&](size_t) { wanted[next++]->decode(); });
     }
 
-    const std::shared_ptr<const Image>& image(size_t index) const { return used_[index].image; }
-    const std::string& path(size_t index) const { return used_[index].path; }
+    /// The image, where it was read, with its file.
+    const Texture& texture(size_t index) const { return used_[index].texture; }
 
   private:
     struct Entry {
@@ -55,7 +56,7 @@ class Images {
         std::string name;
         std::vector<std::byte> decoded;
         std::span<const std::byte> bytes;
-        std::shared_ptr<const Image> image;
+        Texture texture;
 
         /// In bytes; 0 where that is not known.
         uintmax_t encoded_size() const {
@@ -66,8 +67,10 @@ class Images {
         }
         void decode() {
             try {
-                image = std::make_shared<const Image>(path.empty() ? decode_image(bytes, name)
-                                                                   : load_image(path));
+                if (path.empty())
+                    texture.image = std::make_shared<const Image>(decode_image(bytes, name));
+                else
+                    texture = load_texture(path);
             } catch (const Error& error) {
                 log_warning(fmt::format("drawn without a texture: {}", error.what()));
             }
@@ -242,9 +245,8 @@ class MaterialReader {
         if (!info) return out;
         const Json& texture = document_.item("textures", document_.integer(*info, "index"));
         const auto source = image_of(texture);
-        if (!source || !images_.image(*source)) return out;
-        out.image = images_.image(*source);
-        out.path = images_.path(*source);
+        if (!source || !images_.texture(*source)) return out;
+        out = images_.texture(*source);
         if (const auto index = document_.optional_integer(texture, "sampler")) {
             const Json& sampler = document_.item("samplers", *index);
             out.wrap_u = wrap_of(document_.optional_integer(sampler, "wrapS").value_or(0));

@@ -126,11 +126,12 @@ class MtlWriter {
         if (stem_.starts_with('-')) stem_[0] = '_';
     }
 
-    /// A name that a texture's file has is no one else's.
+    /// A name that a texture's file has, changed or not, is no one else's.
     void keep_names_of(const Material& m) {
         for (const Texture* texture : {&m.base_color_texture, &m.emissive_texture, &m.roughness_texture,
                                        &m.metallic_texture, &m.opacity_texture, &m.normal_texture})
-            taken_.insert(path_of(*texture));
+            if (std::error_code ignored; !texture->image || fs::exists(texture->path, ignored))
+                taken_.insert(path_of(*texture));
     }
 
     /// The name of the material in the MTL, one line, never empty. Materials that are the same there share
@@ -180,7 +181,7 @@ class MtlWriter {
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0) && obj_mapping().has_transform(M))
             line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
-        line(" {}\n", texture.path.empty() ? name_of(texture.image, kind) : name_in_line(path_of(texture)));
+        line(" {}\n", is_in_file(texture) ? name_in_line(path_of(texture)) : name_of(texture.image, kind));
     }
 
     std::string path_of(const Texture& texture) const {

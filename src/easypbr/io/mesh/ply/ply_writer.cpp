@@ -8,6 +8,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/io/tables/face_polygons.h"
 #include "easypbr/io/tables/splat_columns.h"
 #include "easypbr/io/tables/vertex_rows.h"
@@ -70,9 +71,8 @@ std::string encode_ply(const MeshData& mesh, const fs::path& folder) {
     const std::vector<RowPart> face_values = face_row_parts(mesh);
     const FacePolygons polygons(mesh);
     std::string out = "ply\nformat binary_little_endian 1.0\n";
-    if (mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty())
-        out += fmt::format("comment TextureFile {}\n",
-                           path_from_folder(mesh.materials[0].base_color_texture.path, folder));
+    if (const Texture* texture = ply_texture(mesh))
+        out += fmt::format("comment TextureFile {}\n", path_from_folder(texture->path, folder));
     if (!mesh.splats.empty())
         out += fmt::format("comment up {} {} {}\n", mesh.up.x(), mesh.up.y(), mesh.up.z());
     out += fmt::format("element vertex {}\n", mesh.V.rows());
