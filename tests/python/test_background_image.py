@@ -1,5 +1,8 @@
 """Images behind everything, larger than the picture."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -46,6 +49,30 @@ def test_floats_that_are_no_numbers_are_replaced(tmp_path, caplog):
     assert "1200 values that are NaN or infinite were replaced by 0" in caplog.text
     # 1.055 * 0.25^(1/2.4) - 0.055 = 0.537, the code 136.96.
     assert (picture[:28, :, :3] == 137).all() and (picture[..., 3] == 255).all()
+
+
+def test_a_named_image_is_that_of_the_folder_it_was_given_in(tmp_path, monkeypatch):
+    (tmp_path / "sub").mkdir()
+    easypbr.save_image(np.full((4, 4, 3), (255, 0, 0), np.uint8), tmp_path / "back.png")
+    easypbr.save_image(np.full((4, 4, 3), (0, 0, 255), np.uint8), tmp_path / "sub" / "back.png")
+    monkeypatch.chdir(tmp_path)
+    easypbr.shapes.box((1e-3, 1e-3, 1e-3)).save("far.ply")
+    scene = easypbr.Scene()
+    scene.show(easypbr.Mesh("far.ply"), "far")
+    camera = {"position": (0, 0, 5), "target": (0, 3, 0)}
+    view = easypbr.Viewer((8, 8), {"background": {"mode": "image", "image": "back.png"}, "camera": camera}, scene=scene)
+    monkeypatch.chdir(tmp_path / "sub")
+    assert (view.render(samples=1)[..., :3] == (255, 0, 0)).all()
+    assert view.settings.background.image == "back.png"
+    view.save_settings("look.json")
+    saved = json.loads(Path("look.json").read_text())
+    assert str(tmp_path / "back.png") in json.dumps(saved) and str(tmp_path / "far.ply") in json.dumps(saved)
+    # Given again, it is one of the folder there.
+    view.settings.background.image = "back.png"
+    assert (view.render(samples=1)[..., :3] == (0, 0, 255)).all()
+    view.settings.background.image = "none.png"
+    with pytest.raises(easypbr.FileError, match="cannot read none.png"):
+        view.render(samples=1)
 
 
 def test_a_larger_picture_shows_more_of_it(tmp_path):

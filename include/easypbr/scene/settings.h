@@ -12,6 +12,7 @@
 #include "easypbr/scene/effects/effects.h"
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/material.h"
+#include "easypbr/scene/named_file.h"
 #include "easypbr/scene/style.h"
 
 namespace easypbr {
@@ -62,7 +63,7 @@ using CameraSettings = BasicCameraSettings<Auto>;
 /// Image-based lighting by an equirectangular environment map.
 template <template <class> class MaybeAuto>
 struct BasicEnvironmentSettings {
-    std::string file;              ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
+    NamedFile file;                ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
     MaybeAuto<bool> enabled{};     ///< enables image-based lighting; automatic: on
     float rotation_deg = 0;        ///< about the up axis, degrees, counter-clockwise seen from above
     MaybeAuto<float> intensity{};  ///< scale factor of the radiance, 0 to 1e6; automatic: 0.2 of the studio
@@ -79,7 +80,7 @@ inline Vec3 rgb8(int red, int green, int blue) {
 struct BackgroundSettings {
     BackgroundMode mode = BackgroundMode::color;  ///< transparent: alpha 0
     Vec3 color = rgb8(217, 217, 217);             ///< sRGB-encoded; neither exposed nor tone mapped
-    std::string image;                            ///< file, for mode image
+    NamedFile image;                              ///< for mode image
     float blur = 0.4f;                            ///< of the environment map in mode blur: 0 none, 1 the most
 
     /// Whether the environment is visible behind the content.
@@ -164,9 +165,9 @@ struct MaterialSettings {
     Override<float> anisotropy;               ///< strength, 0 to 1
     Override<float> anisotropy_rotation_deg;  ///< degrees, counter-clockwise from the tangent
     /// Files; empty: the material's own.
-    std::string base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
+    NamedFile base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
         emissive_texture, opacity_texture;
-    std::string shader;  ///< file of a GLSL surface shader; empty: the material's own
+    NamedFile shader;  ///< file of a GLSL surface shader; empty: the material's own
 };
 
 /// Clipping of every object, in world space.

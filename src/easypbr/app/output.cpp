@@ -111,10 +111,10 @@ void save_settings(const Session& session, const std::vector<fs::path>& files, c
                 fmt::format("{} does not hold the hash of {}, whose name is not UTF-8", path.string(), name));
     }
     // Absolute, so that the picture can be made again from any folder.
-    for_each_file(file.settings, [&](std::string& named) {
+    for_each_file(file.settings, [&](NamedFile& named) {
         if (named.empty()) return;
-        named = fs::absolute(named).string();
-        file.files[named] = io::hash_file(named);
+        file.files[named.path()] = io::hash_file(named.path_from_here());
+        named = named.path();
     });
     io::save_settings(file, path);
     warn_of_data(session, path);

@@ -10,6 +10,7 @@
 #include "easypbr/core/image.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/environment.h"
+#include "easypbr/scene/named_file.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
@@ -18,34 +19,34 @@ struct Settings;
 
 namespace easypbr::app {
 
-/// Images by path.
+/// Images of files.
 class ImageFiles {
   public:
     /// Reads those that are new or have changed, all at once. Throws FileError, FormatError.
-    void read(const std::vector<std::string>& paths);
-    /// One that has been read; null for an empty path.
-    std::shared_ptr<const Image> get(const std::string& path) const;
+    void read(const std::vector<NamedFile>& files);
+    /// One that has been read; null where no file is named.
+    std::shared_ptr<const Image> get(const NamedFile& file) const;
 
   private:
     struct File {
         std::filesystem::file_time_type time;
         std::shared_ptr<const Image> image;
     };
-    std::map<std::string, File> files_;
+    std::map<std::string, File> files_;  ///< by absolute path
 };
 
-/// Texts of shaders by path.
+/// Texts of shaders.
 class ShaderTexts {
   public:
     /// The file's text, read when it is new or has changed. Throws FileError.
-    const std::string& get(const std::string& path);
+    const std::string& get(const NamedFile& file);
 
   private:
     struct File {
         std::filesystem::file_time_type time;
         std::string text;
     };
-    std::map<std::string, File> files_;
+    std::map<std::string, File> files_;  ///< by absolute path
 };
 
 class SettingsFiles {
@@ -69,12 +70,13 @@ class SettingsFiles {
 
   private:
     /// As it is now.
-    bool is_environment_read(const std::string& file) const;
+    bool is_environment_read(const NamedFile& file) const;
+    void read_environment(const NamedFile& file);
 
     ImageFiles image_files_;
     ShaderTexts shader_texts_;
     render::SettingsImages images_;
-    std::string environment_file_;
+    std::string environment_path_;  ///< absolute
     std::filesystem::file_time_type environment_time_;
     Environment environment_;
     std::shared_ptr<const Image> background_;  ///< given as it is

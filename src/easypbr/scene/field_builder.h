@@ -13,6 +13,7 @@
 #include "easypbr/scene/auto.h"
 #include "easypbr/scene/colormap.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/named_file.h"
 
 namespace easypbr::detail {
 
@@ -45,6 +46,9 @@ inline Value::Data to_data(double value) {
 }
 inline Value::Data to_data(const std::string& value) {
     return value;
+}
+inline Value::Data to_data(const NamedFile& value) {
+    return value.name();
 }
 inline Value::Data to_data(const std::vector<double>& value) {
     return value;
@@ -79,6 +83,9 @@ inline void from_data(const Value::Data& data, double& value) {
     value = std::get<double>(data);
 }
 inline void from_data(const Value::Data& data, std::string& value) {
+    value = std::get<std::string>(data);
+}
+inline void from_data(const Value::Data& data, NamedFile& value) {
     value = std::get<std::string>(data);
 }
 inline void from_data(const Value::Data& data, std::vector<double>& value) {
@@ -189,7 +196,7 @@ void describe(FieldInfo& field) {
     } else if constexpr (std::is_same_v<T, Colormap>) {
         field.type = FieldType::colormap;
         field.choices = colormap_names();
-    } else if constexpr (std::is_same_v<T, std::string>) {
+    } else if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, NamedFile>) {
         field.type = FieldType::text;
     } else if constexpr (std::is_same_v<T, std::vector<double>>) {
         field.type = FieldType::vector;

@@ -267,7 +267,7 @@ void add_extended_overrides(Table& table) {
 }
 
 void add_overrides(Table& table) {
-    const auto file = [&](const std::string& name, std::string MaterialSettings::*member,
+    const auto file = [&](const std::string& name, NamedFile MaterialSettings::*member,
                           const std::string& doc) {
         table.push_back(make("material." + name, in_material(member), doc + " Empty: the material's own."));
     };
@@ -315,8 +315,7 @@ void add_style(Table& table) {
         "opacity is lowered as they grow. For scenes that were trained this way.",
         "no");
     add("voxel_size", &Style::voxel_size, "Edge length of voxels.",
-        "the voxel size of the data, or the mean spacing of the points", "mesh units",
-        {positive, unlimited});
+        "the voxel size of the data, or the mean spacing of the points", "mesh units", {positive, unlimited});
     add("line_width", &Style::line_width, "Width of lines, wireframes and normals.", "1.5", "pixels",
         {0.1, 1000});
     add("line_dash", &Style::line_dash, "Length of dashes and of the gaps between them; 0 draws solid lines.",

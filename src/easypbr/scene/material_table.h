@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "easypbr/scene/material.h"
+#include "easypbr/scene/named_file.h"
 
 namespace easypbr {
 
@@ -39,7 +40,7 @@ struct MaterialTexture {
     const char* doc;
     /// File that replaces the texture in every material, "material.NAME_texture"; null: there is no such
     /// setting. Those of glTF's core model have one, those of its extensions have none.
-    std::string MaterialSettings::*setting = nullptr;
+    NamedFile MaterialSettings::*setting = nullptr;
     const char* setting_doc = nullptr;
 };
 

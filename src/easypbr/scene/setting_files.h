@@ -6,8 +6,8 @@
 
 namespace easypbr {
 
-/// Calls visit(path) for every setting that names a file; the path is empty where none is named. Changes to
-/// it go into the settings unless they are constant.
+/// Calls visit(file) with the NamedFile of every setting that names a file, empty where none is named.
+/// Changes to it go into the settings unless they are constant.
 template <class S, class Visit>
 void for_each_file(S& settings, Visit&& visit) {
     visit(settings.environment.file);

@@ -373,7 +373,7 @@ BackgroundImage* Renderer::background_image(const ResolvedSettings& resolved, co
     if (background.mode != BackgroundMode::image || !images.background) return nullptr;
     if (!background_ || background_->image() != images.background)
         background_ = std::make_unique<BackgroundImage>(
-            images.background, background.image.empty() ? "array" : background.image);
+            images.background, background.image.empty() ? "array" : background.image.name());
     return background_.get();
 }
 
