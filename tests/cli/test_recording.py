@@ -111,6 +111,20 @@ def test_pictures_and_their_folder(render, box, tmp_path):
     assert (tmp_path / "out/f_1.exr").exists()
 
 
+def test_older_pictures_behind_the_last_are_told(render, box, tmp_path):
+    assert "older" not in render(box, "--turntable", "5", "-o", "out/f_%03d.png", *LOOK).stderr
+    # Other names, and numbers that the pattern would write with zeros, are no frames of it.
+    for name in ("f_07.png", "f_0009.png", "f_006.exr", "f_008_2.png", "f_.png", "g_009.png"):
+        (tmp_path / "out" / name).touch()
+    before = sorted(p.name for p in (tmp_path / "out").iterdir())
+    told = render(box, "--turntable", "3", "-o", "out/f_%03d.png", *LOOK).stderr
+    assert "2 older pictures are left behind the 3 of this recording (out/f_003.png to out/f_004.png)" in told
+    told = render(box, "--turntable", "4", "-o", "out/f_%03d.png", *LOOK).stderr
+    assert "1 older picture is left behind the 4 of this recording (out/f_004.png)" in told
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == before, "nothing is deleted"
+    assert "older" not in render(box, "--turntable", "5", "-o", "out/f_%03d.png", *LOOK).stderr
+
+
 def test_a_camera_path_hits_its_keys(render, box, tmp_path):
     """Frame 0 and the last frame are the stills at the first and the last key, bit for bit."""
     keys = [{"position": [3, 2, 4], "target": [0, 0, 0]}, {"position": [-3, 1, 4], "target": [0, 0.2, 0]}]

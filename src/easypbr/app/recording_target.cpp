@@ -4,13 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
+#include <system_error>
+#include <vector>
 
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/image/image_io.h"
@@ -75,6 +80,42 @@ std::string known_kinds() {
                        fmt::join(io::writable_image_extensions(), ", "));
 }
 
+/// The number that frame_path() wrote into a file's name; nothing for other names.
+std::optional<int> number_of(const std::string& name, const fs::path& pattern) {
+    const std::string own = pattern.filename().string();
+    const std::optional<Number> number = number_in(own);
+    const size_t after = number ? own.size() - number->end : 0;
+    if (!number || name.size() <= number->begin + after) return {};
+    const char* const end = name.data() + name.size() - after;
+    int index = 0;
+    const auto read = std::from_chars(name.data() + number->begin, end, index);
+    const bool is_number = read.ec == std::errc() && read.ptr == end && index >= 0;
+    if (!is_number || frame_path(pattern, index).filename() != name) return {};
+    return index;
+}
+
+/// Pictures of an earlier, longer recording stay: they may be someone's. A program that reads the pictures by
+/// their numbers would show both.
+void warn_of_older_frames(const fs::path& pattern, int count) {
+    std::vector<int> older;
+    std::error_code unreadable;
+    const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
+    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end;
+         entry.increment(unreadable)) {
+        const std::optional<int> index = number_of(entry->path().filename().string(), pattern);
+        if (index && *index >= count) older.push_back(*index);
+    }
+    if (older.empty()) return;
+    const auto [first, last] = std::ranges::minmax(older);
+    const std::string which = first == last ? frame_path(pattern, first).string()
+                                            : fmt::format("{} to {}", frame_path(pattern, first).string(),
+                                                          frame_path(pattern, last).string());
+    log_warning(
+        fmt::format("{}: {} older picture{} left behind the {} of this recording ({}): programs that "
+                    "read numbered pictures take them as well",
+                    pattern.string(), older.size(), older.size() == 1 ? " is" : "s are", count, which));
+}
+
 /// Files appear in order, so that a recording that is killed has no gaps.
 class PictureFrames final : public FrameWriter {
   public:
@@ -91,6 +132,7 @@ class PictureFrames final : public FrameWriter {
         std::error_code ignored;
         // A folder that something else was put into stays.
         if (made_ && next_ == 0) fs::remove(path_.parent_path(), ignored);
+        if (next_ > 0) warn_of_older_frames(path_, next_);
     }
     int threads() const override { return std::clamp(thread_count(), 1, 8); }
 
