@@ -150,6 +150,10 @@ def test_a_camera_path_hits_its_keys(render, box, tmp_path):
         (("--fps", "30", "-o", "a.png"), "--fps needs --turntable, --camera-path or --animation"),
         (("--turntable", "5", "-o", "-"), "cannot go to standard output"),
         (("--turntable", "5", "-o", "a.mp4", "--layers", "depth"), "--layers are of one picture"),
+        (("--turntable", "5", "-o", "a.png"), "one picture cannot hold many frames"),
+        (("--turntable", "5", "-o", "out/f_%d.tga"), "cannot record to out/f_%d.tga: unknown extension 'tga'; expected"),
+        (("--turntable", "5", "-o", "a.xyz"), "cannot record to a.xyz: unknown extension 'xyz'; expected"),
+        (("--turntable", "5", "-o", "a.html"), "an HTML page is no recording"),
     ],
 )
 def test_wrong_commands(render, box, arguments, message):
@@ -159,7 +163,6 @@ def test_wrong_commands(render, box, arguments, message):
 @pytest.mark.parametrize(
     "arguments, message",
     [
-        (("--turntable", "5", "-o", "a.png"), "one picture cannot hold many frames"),
         (("--turntable", "5", "-o", "a.mp4", "--codec", "betamax"), "no encoder 'betamax' for it; it has "),
         (("--turntable", "5", "-o", "no/such/folder/a.mp4"), "no/such/folder"),
         (("--turntable", "5", "-o", "a.mp4", "--background", "transparent"), "no transparency"),

@@ -213,6 +213,15 @@ Encoding encoding_for_recording(const fs::path& path, bool deep) {
     return io::is_video(path) ? Encoding::srgb8 : encoding_for(frame_path(path, 0), deep);
 }
 
+void check_recording_name(const fs::path& path) {
+    if (io::is_video(path)) return;
+    const std::string extension = extension_of(numbered(path));
+    if (std::ranges::count(io::writable_image_extensions(), extension) == 0)
+        throw ArgumentError(fmt::format("cannot record to {}: unknown extension '{}'; expected {}",
+                                        path.string(), extension, known_kinds()));
+    frame_path(path, 0);
+}
+
 void check_recording(const fs::path& path, const Settings& settings, const RecordingOptions& options) {
     if (!(options.rate() > 0) || !std::isfinite(options.rate()))
         throw ArgumentError(fmt::format("cannot record {}: expected above 0 frames per second, got {}",
@@ -230,18 +239,14 @@ void check_recording(const fs::path& path, const Settings& settings, const Recor
         io::check_video(path, options.codec);
         return check_writable(path);
     }
-    const fs::path pattern = numbered(path);
-    const std::vector<std::string> known = io::writable_image_extensions();
-    if (std::ranges::count(known, extension_of(pattern)) == 0)
-        throw ArgumentError(fmt::format("cannot record to {}: unknown extension '{}'; expected {}",
-                                        path.string(), extension_of(pattern), known_kinds()));
+    check_recording_name(path);
     encoding_for_recording(path, options.deep);
     if (!options.codec.empty())
         throw ArgumentError(
             fmt::format("cannot record {}: pictures have no codec, got '{}'", path.string(), options.codec));
     if (transparent) check_holds_alpha(path);
     check_picture_fits(frame_path(path, 0), options.size.value_or(settings.image.size));
-    check_folder(pattern);
+    check_folder(numbered(path));
 }
 
 std::unique_ptr<FrameWriter> make_frame_writer(const fs::path& path, const Vec2i& size,

@@ -26,10 +26,13 @@ bool is_recording_name(const std::filesystem::path& path);
 /// What the frames must be drawn as.
 Encoding encoding_for_recording(const std::filesystem::path& path, bool deep);
 
-/// Throws, before anything is drawn, when the recording cannot be written there: FileError; ArgumentError for
-/// an extension that is no video's and no picture's, a picture's name without a number (%04d), an encoder
-/// that is not there, transparency where the file has none, and a rate that is not above 0; FormatError when
-/// the module for videos is missing.
+/// Throws ArgumentError for what the name alone shows: an extension that is no video's and no picture's, a
+/// picture's name without a number (%04d).
+void check_recording_name(const std::filesystem::path& path);
+
+/// Throws, before anything is drawn, when the recording cannot be written there: FileError; ArgumentError as
+/// check_recording_name(), and for an encoder that is not there, transparency where the file has none, and a
+/// rate that is not above 0; FormatError when the module for videos is missing.
 void check_recording(const std::filesystem::path& path, const Settings& settings,
                      const RecordingOptions& options);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "easypbr/app/output.h"
+#include "easypbr/app/recording_target.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
@@ -84,6 +85,7 @@ void check_usage(const RenderOptions& options) {
         throw UsageError("render: --camera and --camera-pose exclude each other");
     const bool is_picture = !options.records() && !options.is_page() && !options.is_line_drawing();
     if (is_picture && !options.output.empty() && options.output != "-") app::encoding_for(options.output);
+    if (options.records()) app::check_recording_name(options.output);
     if (options.bit_depth == 16 && options.output != "-" && extension_of(options.output) != "png")
         throw UsageError("render: --bit-depth 16 needs a PNG file as output");
     if (options.output == "-" && (options.batch || !options.layers.empty()))
