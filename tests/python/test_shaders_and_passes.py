@@ -53,6 +53,19 @@ def test_a_path_is_read_again_when_it_changes(view, tmp_path):
     assert np.allclose(albedo(view), (0.75, 0.5, 1.0), atol=0.5 / 65535)
 
 
+@pytest.mark.parametrize("of_material", [True, False], ids=["material", "setting"])
+def test_a_path_is_that_of_the_folder_it_was_given_in(view, tmp_path, monkeypatch, of_material):
+    (tmp_path / "sub").mkdir()
+    write(tmp_path / "own.glsl", BLUE)
+    monkeypatch.chdir(tmp_path)
+    if of_material:
+        view.scene.get("box").material.shader = pathlib.Path("own.glsl")
+    else:
+        view.settings.material.shader = "own.glsl"
+    monkeypatch.chdir(tmp_path / "sub")
+    assert np.allclose(albedo(view), (0.25, 0.5, 1.0), atol=0.5 / 65535)
+
+
 def test_a_setting_is_for_all(view, tmp_path):
     write(tmp_path / "own.glsl", BLUE)
     view.settings.material.shader = str(tmp_path / "own.glsl")
