@@ -132,6 +132,73 @@ TEST(DepthOfField, WhatIsNearIsSeenThroughAtItsEdge) {
     }
 }
 
+/// A square of this colour, which is shown as it is, this far before the camera.
+Mesh square_as_it_is(double distance, float half, const Vec3& color) {
+    Material plain;
+    plain.base_color = color;
+    Mesh mesh = facing_square(half, plain);
+    mesh.edit([](MeshData& d) { d.style.lit = false; });
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, -distance)));
+    return mesh;
+}
+
+// Nothing else is in the picture, so the lens changes none of its bytes.
+TEST(DepthOfField, ColorsThatAreShownAsTheyAreStaySharp) {
+    for (const DrawMode mode : {DrawMode::mesh, DrawMode::points, DrawMode::surfels, DrawMode::voxels})
+        for (const bool labels : {false, true}) {
+            Mesh mesh = make_sphere(0.8, 24);
+            mesh.edit([&](MeshData& d) {
+                Array1i::Dense L(d.V.rows());
+                L.setConstant(3);
+                d.L = Array1i(L);
+                d.style.mode = mode;
+                d.style.lit = false;
+                if (labels) d.style.color_by = ColorBy::label;
+            });
+            mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, -4)));
+            Scene scene;
+            scene.show(mesh, "ball");
+            app::Session session = lens_session(scene);
+            for (const bool native : {true, false}) {
+                session.allow_native_shading(native);
+                session.settings().depth_of_field.enabled = false;
+                const Image without = session.render({std::nullopt, 1, app::Encoding::srgb8});
+                session.settings().depth_of_field.enabled = true;
+                const Image with = session.render({std::nullopt, 1, app::Encoding::srgb8});
+                EXPECT_EQ(std::memcmp(with.bytes().data(), without.bytes().data(), with.bytes().size()), 0)
+                    << "mode " << int(mode) << ", labels " << labels << ", native " << native;
+            }
+        }
+}
+
+// Before a white wall that is out of focus, behind it or before it, whatever the lens mixes is white: what
+// has no light of its own darkens none of it, and hides it where it is seen itself. What is gathered is kept
+// in halves, which err by 0.0005 where it is 1; three of them make a pixel.
+TEST(DepthOfField, ColorsThatAreShownAsTheyAreDarkenNothing) {
+    for (const double wall : {30.0, 10.6, 9.3, 6.0}) {
+        Scene scene = lamp_at(wall, float(wall));
+        scene.show(square_as_it_is(5, 0.3f, Vec3::Zero()), "before");
+        app::Session session = lens_session(scene);
+        session.settings().edl.enabled = false;
+        for (const bool native : {true, false}) {
+            session.allow_native_shading(native);
+            session.settings().depth_of_field.enabled = false;
+            const Image without = render_linear(session);
+            session.settings().depth_of_field.enabled = true;
+            const Image with = render_linear(session);
+            int dark = 0;
+            for (size_t i = 0; i < with.pixel_count(); ++i) {
+                const float sharp = without.pixels<float>()[4 * i + 1];
+                ASSERT_NEAR(with.pixels<float>()[4 * i + 1], sharp, 0.002f)
+                    << i << ", wall " << wall << ", native " << native;
+                dark += sharp < 0.5f;
+            }
+            // 0.6 across at a distance of 5, of a picture 2 * 5 * tan(15 degrees) high: 54 pixels squared.
+            EXPECT_NEAR(dark, 54 * 54, 2 * 54);
+        }
+    }
+}
+
 TEST(DepthOfField, LayersAreThoseOfThePinhole) {
     app::Session session = lens_session(lamp_at(4, 1));
     const std::vector<std::string> names = {"depth", "object_id", "normal_world", "albedo"};

@@ -144,6 +144,7 @@ using u_exit_depth = R32f;
 using u_exit_normal = Rg16;
 using u_finer = Rgba32fLinear;
 using u_hidden = R16fLinear;
+using u_weight = R16fLinear;
 using u_edges = Rg8;
 using u_last_depth = R32f;
 using u_next_depth = R32f;

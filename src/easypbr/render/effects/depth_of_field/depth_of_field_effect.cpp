@@ -56,16 +56,17 @@ void DepthOfFieldEffect::make_targets(Vec2i size) {
     before_ = Target(gl::Format::rgba16f, half);
     confusion_ = Target(gl::Format::r32f, half);
     hidden_ = Target(gl::Format::r16f, half);
+    weight_ = Target(gl::Format::r16f, half);
     halved_ = gl::Framebuffer();
 }
 
 void DepthOfFieldEffect::make_framebuffers() {
-    for (const Target* target : {&light_, &confusion_, &behind_, &before_, &hidden_, &radiance_})
+    for (const Target* target : {&light_, &confusion_, &weight_, &behind_, &before_, &hidden_, &radiance_})
         target->drawn();
     if (halved_) return;
-    for (const Target* target : {&behind_, &before_, &hidden_})
+    for (const Target* target : {&behind_, &before_, &hidden_, &weight_})
         target->attachment().sampling(gl::Filtering::linear);
-    halved_ = gl::Framebuffer({&light_.attachment(), &confusion_.attachment()});
+    halved_ = gl::Framebuffer({&light_.attachment(), &confusion_.attachment(), &weight_.attachment()});
     gathered_ = gl::Framebuffer({&behind_.attachment(), &before_.attachment(), &hidden_.attachment()});
     composed_ = gl::Framebuffer({&radiance_.attachment()});
 }
@@ -80,8 +81,12 @@ int DepthOfFieldEffect::reach(const Frame& whole, const Box3d& bounds) const {
     return int(std::ceil(largest_confusion(whole, bounds))) + 4;
 }
 
-ShaderInputs DepthOfFieldEffect::halve_inputs(const EffectInputs& inputs) const {
+ShaderInputs DepthOfFieldEffect::halve_inputs(const EffectInputs& inputs, bool overlay) const {
     ShaderInputs values;
+    if (overlay) {
+        values.define("OVERLAY");
+        values.set("u_material", inputs.targets.material);
+    }
     values.set("u_size", Vec2(inputs.frame.size.cast<float>()));
     values.set("u_light_scale", half_light_scale(inputs.frame.resolved->exposure));
     values.set("u_focus", Vec2(confusion_of(inputs.frame).cast<float>()));
@@ -90,48 +95,54 @@ ShaderInputs DepthOfFieldEffect::halve_inputs(const EffectInputs& inputs) const 
     return values;
 }
 
-ShaderInputs DepthOfFieldEffect::gather_inputs(const EffectInputs& inputs) const {
+ShaderInputs DepthOfFieldEffect::gather_inputs(const EffectInputs& inputs, bool overlay) const {
     const double reach = largest_confusion(inputs.frame, inputs.bounds) / 2;
     ShaderInputs values;
+    if (overlay) values.define("OVERLAY");
     values.set("u_half_size", Vec2(light_.size().cast<float>()));
     values.set("u_reach", float(reach));
     set_taps(values, reach);
     values.set("u_half_light", light_);
     values.set("u_confusion", confusion_);
+    values.set("u_weight", weight_);
     return values;
 }
 
-ShaderInputs DepthOfFieldEffect::compose_inputs(const EffectInputs& inputs) const {
-    ShaderInputs values = halve_inputs(inputs);
+ShaderInputs DepthOfFieldEffect::compose_inputs(const EffectInputs& inputs, bool overlay) const {
+    ShaderInputs values = halve_inputs(inputs, overlay);
     values.set("u_covered_size", Vec2(2 * light_.size().cast<float>()));
     values.set("u_behind", behind_);
     values.set("u_before", before_);
     values.set("u_hidden", hidden_);
+    values.set("u_weight", weight_);
     return values;
 }
 
 void DepthOfFieldEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
+    const bool overlay = lit.overlay != nullptr;
     make_targets(inputs.frame.size);
     make_framebuffers();
     halved_.bind();
-    halve_.draw(halve_inputs(inputs), {});
+    halve_.draw(halve_inputs(inputs, overlay), {});
     gathered_.bind();
-    gather_.draw(gather_inputs(inputs), {});
+    gather_.draw(gather_inputs(inputs, overlay), {});
     composed_.bind();
-    compose_.draw(compose_inputs(inputs), {});
+    compose_.draw(compose_inputs(inputs, overlay), {});
     finish(lit);
 }
 
 void DepthOfFieldEffect::shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) {
+    const bool overlay = lit.overlay != nullptr;
     make_targets(inputs.frame.size);
-    for (const Target* target : {&light_, &confusion_, &behind_, &before_, &hidden_, &radiance_})
+    for (const Target* target : {&light_, &confusion_, &weight_, &behind_, &before_, &hidden_, &radiance_})
         target->write(target->whole());
     const PixelRect half = light_.whole();
-    halve_.shade(halve_inputs(inputs), {.target = &light_, .area = half, .further = {&confusion_}},
-                 transfers);
-    gather_.shade(gather_inputs(inputs), {.target = &behind_, .area = half, .further = {&before_, &hidden_}},
-                  transfers);
-    compose_.shade(compose_inputs(inputs), {.target = &radiance_, .area = radiance_.whole()}, transfers);
+    halve_.shade(halve_inputs(inputs, overlay),
+                 {.target = &light_, .area = half, .further = {&confusion_, &weight_}}, transfers);
+    gather_.shade(gather_inputs(inputs, overlay),
+                  {.target = &behind_, .area = half, .further = {&before_, &hidden_}}, transfers);
+    compose_.shade(compose_inputs(inputs, overlay), {.target = &radiance_, .area = radiance_.whole()},
+                   transfers);
     finish(lit);
 }
 

@@ -9,7 +9,8 @@ namespace easypbr::render {
 
 /// Blurs the radiance by the thin lens's circle of confusion, at half resolution, what is near over what is
 /// far. What is hidden in the picture cannot be seen around what hides it, and circles are at most a
-/// sixteenth of the picture's height in radius.
+/// sixteenth of the picture's height in radius. Colours that are shown past the tone curve stay sharp, and
+/// take no part.
 class DepthOfFieldEffect : public Effect {
   public:
     const char* name() const override { return "depth of field"; }
@@ -21,12 +22,13 @@ class DepthOfFieldEffect : public Effect {
   private:
     void make_targets(Vec2i size);
     void make_framebuffers();
-    ShaderInputs halve_inputs(const EffectInputs& inputs) const;
-    ShaderInputs gather_inputs(const EffectInputs& inputs) const;
-    ShaderInputs compose_inputs(const EffectInputs& inputs) const;
+    /// `overlay`: some surfaces may be shown past light and tone curve.
+    ShaderInputs halve_inputs(const EffectInputs& inputs, bool overlay) const;
+    ShaderInputs gather_inputs(const EffectInputs& inputs, bool overlay) const;
+    ShaderInputs compose_inputs(const EffectInputs& inputs, bool overlay) const;
     void finish(LitPicture& lit) const;
 
-    Target light_, confusion_, behind_, before_, hidden_;  ///< of half resolution
+    Target light_, confusion_, weight_, behind_, before_, hidden_;  ///< of half resolution
     Target radiance_;
     gl::Framebuffer halved_, gathered_, composed_;
     ScreenShader halve_{"focus_halve.frag", native::Shader::focus_halve};
