@@ -237,7 +237,8 @@ class Viewer(Sharing):
         """The image and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
         depth, distance, position, normal_world, normal_camera, albedo, roughness, metallic, instance_id, semantic_id,
         object_coordinates, face_id, barycentrics, uv, flow_forward, flow_backward and their occlusion_forward and
-        occlusion_backward, and "instances", a list of Instance.
+        occlusion_backward, and "instances", a list of Instance. Of the background, where depth is 0, all but the image is 0
+        and face_id -1; flow is 0 there while the camera moves, too.
 
         `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids by the objects'
         names. Flow needs the `next` or `previous` frame's moment(). Without `amodal` what is hidden of the instances is

@@ -93,6 +93,26 @@ def test_what_the_other_frame_does_not_show_is_occluded(frames):
     assert 0 < (now["occlusion_forward"] & covered).sum() < 0.15 * covered.sum()
 
 
+@pytest.mark.parametrize("ground", ["none", "plane"])
+def test_background_holds_nothing_while_the_camera_moves(ground):
+    """As the page says: 0 in each layer, -1 of faces, and depth and ids agree on what is background."""
+    view = Viewer(SIZE, {"ground.mode": ground, "path.enabled": False}, scene=Scene())
+    view.scene.show(shapes.sphere(0.5), "ball")
+    view.camera = Camera.from_opencv(K, pose(0, 0, 3) @ T_WORLD_CAM, SIZE)
+    other = view.moment()
+    view.camera = Camera.from_opencv(K, pose(0.1, 0, 3) @ T_WORLD_CAM, SIZE)
+    names = ["depth", "distance", "position", "normal_world", "normal_camera", "albedo", "roughness", "metallic", "instance_id",
+             "semantic_id", "object_coordinates", "barycentrics", "uv", "flow_forward", "flow_backward", "occlusion_forward",
+             "occlusion_backward", "face_id"]
+    data = view.render_layers(names, previous=other, next=other)
+    background = data["instance_id"] == 0
+    assert 0 < background.sum() < background.size and ((data["depth"] == 0) == background).all()
+    for name in names:
+        assert (data[name][background] == (-1 if name == "face_id" else 0)).all(), name
+    # The ball itself moves against the camera, by 210 px / 3 m * 0.1 m and more where it is nearer.
+    assert (np.abs(data["flow_forward"][~background][:, 0]) > 6).all()
+
+
 def test_more_instances_than_16_bits_count():
     """A wall of small squares, each an object: ids go on beyond 65,535, and each is where its square is."""
     side, columns = 0.01, 257

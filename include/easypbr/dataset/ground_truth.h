@@ -74,7 +74,8 @@ struct LayerArray {
     const std::vector<uint8_t>& bytes() const { return std::get<std::vector<uint8_t>>(values); }
 };
 
-/// Layers and what they hold; 0 where there is nothing but where another value is named.
+/// Layers and what they hold; 0 where there is nothing but where another value is named. Flow
+/// is 0 there while the camera moves, too: depth or instance_id tells where a pixel holds a surface.
 ///   color               u8 x 4, the picture: sRGB, anti-aliased as any
 ///   hdr                 f32 x 4, the picture: linear radiance, premultiplied
 ///   depth               f32, distance along the optical axis

@@ -217,7 +217,8 @@ def save16(array: NDArray[Any]) -> bytes:
 
 class Flow(Writer):
     """Optical flow as KITTI has it: image_2/*_10.png and *_11.png, flow_occ (all points) and flow_noc (those that the second
-    picture shows too): uint16, 64 x pixels + 32768, the third channel 1 where there is a value."""
+    picture shows too): uint16, 64 x pixels + 32768, the third channel 1 where there is a value: of
+    the background there is none."""
 
     paths: tuple[str, ...] = ("kitti_flow",)
 
