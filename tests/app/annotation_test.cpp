@@ -303,6 +303,31 @@ TEST(Annotation, LongNamesAndTitlesAreShortened) {
     }
 }
 
+// Bars of equal colours and values differ in their titles alone: exchanging these changes the picture where
+// they can be told apart. At 320 x 240 neither the whole of them fits nor, of the last two, what differs.
+TEST(Annotation, ShortenedTitlesAreToldApart) {
+    using Titles = std::vector<std::string>;
+    for (const Titles& titles :
+         {Titles{"error (ours)", "error (baseline)"},
+          {"distance to the scan in mm, before", "distance to the scan in mm, after"},
+          {"Abstand: \u00e4u\u00dferer Rand \u00e4", "Abstand: \u00e4u\u00dferer Rand \u00f6"},
+          {"signed distance along normals of A", "signed distance along normals of B, filtered"}}) {
+        const auto drawn = [&](size_t first) {
+            ColorBar bar = bar_of(Colormap::viridis, {0, 1, 0, 1});
+            Annotation annotation;
+            for (size_t i = 0; i < titles.size(); ++i) {
+                bar.title = titles[(first + i) % titles.size()];
+                annotation.bars.push_back(bar);
+            }
+            Image picture = plain(PixelType::u8, 320, 240);
+            draw_annotation(annotation, {}, picture);
+            return picture;
+        };
+        const PixelRect changed = difference(drawn(0), drawn(1));
+        EXPECT_GT(changed.width, 0) << titles[0];
+    }
+}
+
 TEST(Annotation, FitsIntoNoPictureWithoutHarm) {
     const Annotation annotation{{legend_of(30)}, {bar_of(Colormap::viridis, {0, 1, -1, 2})}};
     for (const auto& [width, height] : {std::pair(1, 1), {3, 200}, {200, 3}, {64, 48}}) {

@@ -55,7 +55,7 @@ int annotations_left_out(const Annotation& annotation, const BasicAnnotationSett
 
 /// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's shorter
 /// side, but text is at least 11 pixels high where that fits, and up to a third smaller where only that fits
-/// into a third of the picture. Longer titles are shortened.
+/// into a third of the picture. Longer titles are shortened; of those that begin alike, what they share.
 void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
                      Image& picture);
 

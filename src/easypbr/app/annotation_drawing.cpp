@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "easypbr/app/annotation.h"
@@ -32,6 +36,19 @@ const Rgb8 dark_ink{16, 16, 16}, light_ink{245, 245, 245}, dark_panel{0, 0, 0}, 
 /// How much of what is behind is covered.
 constexpr float panel_alpha = 0.75f;
 
+constexpr std::string_view ellipsis = "\u2026";
+
+bool is_within_character(char byte) {
+    return (uint8_t(byte) & 0xc0) == 0x80;  // UTF-8
+}
+
+/// Bytes of the longest beginning that two texts share, in whole characters.
+size_t shared_beginning(const std::string& a, const std::string& b) {
+    size_t end = size_t(std::ranges::mismatch(a, b).in1 - a.begin());
+    while (end > 0 && end < a.size() && is_within_character(a[end])) --end;
+    return end;
+}
+
 /// How much room text of one size takes.
 class TextMetrics {
   public:
@@ -45,18 +62,42 @@ class TextMetrics {
     /// The text, or the longest beginning that is no wider than the room together with an ellipsis; nothing
     /// if not even that fits.
     std::string shortened(const std::string& text, int room) const {
-        if (width(text) <= room) return text;
+        return width(text) <= room ? text : cut(text, ellipsis, room);
+    }
+
+    /// The same beside others. Where the beginning does not tell it apart from some of them, what it shares
+    /// with these is left out instead, as far as need be.
+    std::string shortened_beside(std::span<const std::string> others, const std::string& text,
+                                 int room) const {
+        const std::string plain = shortened(text, room);
+        if (plain == text) return text;
+        const size_t kept = plain.size() - std::min(plain.size(), ellipsis.size());
+        size_t shared = text.size();
+        for (const std::string& other : others) {
+            const size_t same = shared_beginning(text, other);
+            if (same >= kept) shared = std::min(shared, same);
+        }
+        if (shared == 0 || shared == text.size()) return plain;
+        const std::string end = fmt::format("{}{}", ellipsis, text.substr(shared));
+        if (width(end) <= room) return cut(text.substr(0, shared), end, room);
+        const std::string middle = cut(end, ellipsis, room);
+        return middle.size() > 2 * ellipsis.size() ? middle : plain;
+    }
+
+  private:
+    /// The longest beginning of a text that is no wider than the room together with what follows it; nothing
+    /// if not even that fits.
+    std::string cut(const std::string& text, std::string_view after, int room) const {
         std::string fits;
-        for (size_t end = 0; end < text.size(); ++end) {
-            if ((uint8_t(text[end]) & 0xc0) == 0x80) continue;  // within a character of UTF-8
-            const std::string next = text.substr(0, end) + "\u2026";
+        for (size_t end = 0; end <= text.size(); ++end) {
+            if (end < text.size() && is_within_character(text[end])) continue;
+            std::string next = text.substr(0, end).append(after);
             if (width(next) > room) break;
-            fits = next;
+            fits = std::move(next);
         }
         return fits;
     }
 
-  private:
     float em_;
     Font font_;
 };
@@ -99,11 +140,13 @@ struct Room {
     int x, y;
     int title;  ///< width
     Titles titles;
+    std::span<const std::string> all_titles;  ///< of all blocks
 };
 
 Block titled(const TextMetrics& metrics, const std::string& text, const Room& room, Block block) {
     if (text.empty()) return block;
-    const std::string title = metrics.shortened(text, std::max(room.title, block.width));
+    const std::string title =
+        metrics.shortened_beside(room.all_titles, text, std::max(room.title, block.width));
     const int row = metrics.px(row_height);
     const bool is_whole = block.is_whole && (room.titles == Titles::cut || title == text);
     return {std::max(block.width, metrics.width(title)), block.height + row, is_whole,
@@ -329,6 +372,8 @@ class AnnotationLayout {
           titles_(titles),
           count_(int(annotation.legends.size() + annotation.bars.size())),
           used_(border()) {
+        for (const Legend& legend : annotation.legends) all_titles_.push_back(legend.title);
+        for (const ColorBar& bar : annotation.bars) all_titles_.push_back(bar.title);
         for (const Legend& legend : annotation.legends) place(legend_block(metrics_, legend, room()));
         for (const ColorBar& bar : annotation.bars) place(bar_block(metrics_, bar, room()));
     }
@@ -362,7 +407,8 @@ class AnnotationLayout {
         const int x = picture_.x() - used_ - border() - 2 * pad();
         const int y = picture_.y() - 2 * (border() + pad());
         const int share = int((largest_strip * picture_.x() - border()) / count_);
-        return {x, y, titles_ == Titles::cut ? share - metrics_.px(gap) - 2 * pad() : x, titles_};
+        return {x, y, titles_ == Titles::cut ? share - metrics_.px(gap) - 2 * pad() : x, titles_,
+                all_titles_};
     }
 
     void place(const Block& block) {
@@ -388,6 +434,7 @@ class AnnotationLayout {
     int used_;         ///< of the picture's width, from the corner inwards
     int tallest_ = 0;  ///< panel's height
     bool is_whole_ = true;
+    std::vector<std::string> all_titles_;
     std::vector<Panel> panels_;
 };
 
