@@ -113,9 +113,9 @@ class Viewer(Sharing):
             self._handle.set_setting("environment.file", "")
 
     def load_background_image(self, source: Any) -> None:
-        """Shows an image behind everything until another background is set: a path, or an array, height x width x (1 to 4),
-        of uint8 or uint16 (sRGB), or of floats (linear, premultiplied by alpha). Files of settings do not hold arrays. What is
-        no image raises an error, and the background before stays."""
+        """Shows an image behind everything until another background is set: a path (photographs are turned upright, as EXIF
+        says), or an array, height x width x (1 to 4), of uint8 or uint16 (sRGB), or of floats (linear, premultiplied by
+        alpha). Files of settings do not hold arrays. What is no image raises an error, and the background before stays."""
         if isinstance(source, (str, os.PathLike)):
             self._handle.load_background_image(source)
         elif source is None:

@@ -143,6 +143,7 @@ void read_image(std::span<const std::byte> bytes) {
         const MemoryScope scope("fuzz", uint64_t(memory_gb * 1e9));
         const Image image = io::decode_image(bytes, "fuzz");
         if (image.width() > largest_written || image.height() > largest_written) return;
+        io::upright(image, io::jpeg_orientation(bytes));
         const Image eight = to_u8(image), linear = to_linear_f32(image);
         const auto read = [](const std::vector<std::byte>& written) { io::decode_image(written, "again"); };
         write_and_read([&] { return io::encode_png(eight); }, read);

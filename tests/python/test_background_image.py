@@ -42,6 +42,26 @@ def test_smaller_levels_stay_in_place(tmp_path, width):
     assert ((picture[8, :, 0] >= least - 0.501) & (picture[8, :, 0] <= most + 0.501)).all()
 
 
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_photographs_are_upright(tmp_path, orientation):
+    # Pillow turns them by itself: what it makes of the stored pixels is the background.
+    Image = pytest.importorskip("PIL.Image")
+    ImageOps = pytest.importorskip("PIL.ImageOps")
+    exif = (b"Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0" + bytes([orientation])) + bytes(6)
+    pixels = np.random.default_rng(orientation).integers(0, 256, (16, 24, 3), np.uint8)
+    Image.fromarray(pixels).save(tmp_path / "photo.jpg", exif=exif, quality=100, subsampling=0)
+    stored = easypbr.load_image(tmp_path / "photo.jpg")
+    assert stored.shape == (16, 24, 3)  # as it is
+    photo = Image.fromarray(stored)
+    photo.getexif()[0x112] = orientation
+    upright = np.asarray(ImageOps.exif_transpose(photo))
+    far = easypbr.shapes.box((1e-3, 1e-3, 1e-3))
+    camera = {"position": (0, 0, 5), "target": (0, 3, 0)}
+    size = upright.shape[1::-1]
+    picture = easypbr.render(far, size=size, samples=1, background=tmp_path / "photo.jpg", camera=camera)
+    assert np.array_equal(picture[..., :3], upright)
+
+
 def test_floats_that_are_no_numbers_are_replaced(tmp_path, caplog):
     pixels = np.full((640, 1000, 3), 0.25, np.float32)
     pixels[600:, ::100] = np.nan

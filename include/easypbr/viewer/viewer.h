@@ -88,7 +88,8 @@ class Viewer {
     /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
     void load_environment_map(const std::filesystem::path& path);
     /// Shows an image file behind everything: settings().background.mode is image, and background.image names
-    /// the file, read at once. Throws FileError, FormatError; then the background before stays.
+    /// the file, read at once; photographs are turned upright (io::load_upright_image()). Throws FileError,
+    /// FormatError; then the background before stays.
     void load_background_image(const std::filesystem::path& path);
     /// Shows an image behind everything: settings().background.mode is image, and background.image names no
     /// file. It is there until that names one, or another image is set; a file of settings does not hold it.

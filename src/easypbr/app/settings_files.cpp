@@ -6,7 +6,6 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/settings.h"
 
@@ -16,10 +15,10 @@ void ImageFiles::read(const std::vector<NamedFile>& files) {
     for (const NamedFile& file : files) files_[file.path()];  // The map must not change while threads use it.
     parallel_for(files.size(), 1, [&](size_t i) {
         File& file = files_.at(files[i].path());
-        std::error_code ignored;  // A file that is missing is reported by load_image().
+        std::error_code ignored;  // A file that is missing is reported by load_().
         const auto time = std::filesystem::last_write_time(files[i].path(), ignored);
         if (!file.image || file.time != time)
-            file = {time, std::make_shared<const Image>(io::load_image(files[i].path_from_here()))};
+            file = {time, std::make_shared<const Image>(load_(files[i].path_from_here()))};
     });
 }
 
@@ -47,7 +46,7 @@ void SettingsFiles::load(const Settings& settings) {
     if (has_background) {
         if (settings.background.image.empty() && !background_)
             throw ArgumentError("background.mode is image, but background.image names no file");
-        add(settings.background.image);
+        if (!settings.background.image.empty()) background_files_.read({settings.background.image});
     }
     std::vector<NamedFile> wanted;
     for (const auto& [path, file] : files) wanted.push_back(file);
@@ -60,7 +59,7 @@ void SettingsFiles::load(const Settings& settings) {
         texture.image = image_files_.get(file);
     }
     if (has_background)
-        images_.background = background_ ? background_ : image_files_.get(settings.background.image);
+        images_.background = background_ ? background_ : background_files_.get(settings.background.image);
     if (settings.environment.file.empty()) {
         environment_ = Environment();
         environment_path_.clear();
@@ -98,7 +97,7 @@ void SettingsFiles::read_environment(const NamedFile& file) {
 }
 
 void SettingsFiles::load_background(const std::filesystem::path& path) {
-    image_files_.read({path.string()});
+    background_files_.read({path.string()});
 }
 
 void SettingsFiles::set_background(Image image) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "easypbr/core/image.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/environment.h"
 #include "easypbr/scene/named_file.h"
@@ -19,9 +20,12 @@ struct Settings;
 
 namespace easypbr::app {
 
-/// Images of files.
+/// Images of files, as a function of io/image/image_io.h loads them.
 class ImageFiles {
   public:
+    using Load = Image (*)(const std::filesystem::path&);
+    explicit ImageFiles(Load load) : load_(load) {}
+
     /// Reads those that are new or have changed, all at once. Throws FileError, FormatError.
     void read(const std::vector<NamedFile>& files);
     /// One that has been read; null where no file is named.
@@ -32,6 +36,7 @@ class ImageFiles {
         std::filesystem::file_time_type time;
         std::shared_ptr<const Image> image;
     };
+    Load load_;
     std::map<std::string, File> files_;  ///< by absolute path
 };
 
@@ -73,7 +78,8 @@ class SettingsFiles {
     bool is_environment_read(const NamedFile& file) const;
     void read_environment(const NamedFile& file);
 
-    ImageFiles image_files_;
+    ImageFiles image_files_{io::load_image};               ///< textures: as they are stored
+    ImageFiles background_files_{io::load_upright_image};  ///< photographs: as they are to be seen
     ShaderTexts shader_texts_;
     render::SettingsImages images_;
     std::string environment_path_;  ///< absolute

@@ -74,7 +74,7 @@ void bind_image(nb::module_& module) {
         [](const fs::path& path) { return to_numpy(released([&] { return io::load_image(path); })); },
         nb::arg("path"), nb::sig("def load_image(path: str | os.PathLike) -> numpy.ndarray"),
         "Reads PNG, JPEG, WebP, HDR or EXR: height x width x channels, row 0 on top; uint8 or uint16 (sRGB), "
-        "or float32 (linear).");
+        "or float32 (linear). Pixels are as they are stored, whatever orientation EXIF notes.");
     module.def(
         "save_image",
         [](const ArrayLike& array, const fs::path& path) {

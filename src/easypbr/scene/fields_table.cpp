@@ -126,7 +126,7 @@ void add_surroundings(Table& table) {
     table.push_back(
         make("background.image", EASYPBR_AT(background.image),
              "Image file of the background in mode image; exposure and tone mapping are not applied "
-             "to it, and its alpha shows background.color."));
+             "to it, its alpha shows background.color, and EXIF's orientation of JPEG files counts."));
     table.push_back(make("background.blur", EASYPBR_AT(background.blur),
                          "Blur of the environment map in mode blur: 0 none, 1 the most.", "", {0, 1}));
 }

@@ -17,7 +17,11 @@ namespace easypbr::io {
 /// or an unknown kind).
 Image load_image(const std::filesystem::path& path);
 
-/// The same from memory; `name` stands in messages.
+/// The same, turned as the orientation that cameras write into JPEG files (EXIF) asks for; load_image() gives
+/// the pixels as they are stored.
+Image load_upright_image(const std::filesystem::path& path);
+
+/// load_image() from memory; `name` stands in messages.
 Image decode_image(std::span<const std::byte> bytes, const std::string& name);
 
 /// Writes by the extension: PNG (u8, u16), JPEG (quality 95), HDR, EXR (float32). Types are converted where

@@ -24,8 +24,19 @@ Image decode_webp(Bytes bytes, const std::string& name);
 Image decode_hdr(Bytes bytes, const std::string& name);
 Image decode_exr(Bytes bytes, const std::string& name);
 
+bool starts_with(Bytes bytes, std::string_view magic);
+
 /// Whether the first bytes are those of a WebP file.
 bool is_webp(Bytes bytes);
+
+/// How the picture of a JPEG file is to be turned, by its EXIF tag: 1 to 8, see upright(). 1 where there is
+/// none, or it is damaged.
+int jpeg_orientation(Bytes bytes);
+
+/// A picture that is stored with an orientation as EXIF numbers them, the way up it is to be seen. The number
+/// tells where its first row and first column are then: 1 top, left; 2 top, right; 3 bottom, right; 4 bottom,
+/// left; 5 left, top; 6 right, top; 7 right, bottom; 8 left, bottom.
+Image upright(Image image, int orientation);
 
 /// Pixels that JPEG holds a side.
 inline constexpr int max_jpeg_side = 65500;

@@ -6,19 +6,18 @@
 #include <algorithm>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "easypbr/core/file.h"
 #include "easypbr/core/memory_budget.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_codecs.h"
 
 namespace easypbr::io {
-namespace {
 
 bool starts_with(Bytes bytes, std::string_view magic) {
     return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
-
-}  // namespace
 
 void fail_image(const std::string& name, std::string_view what) {
     throw FormatError(fmt::format("cannot read {}: {}", name, what));
@@ -60,6 +59,36 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
 Image load_image(const std::filesystem::path& path) {
     const FileBytes file(path);
     Image image = decode_image(file.bytes(), path.string());
+    file.check();
+    return image;
+}
+
+Image upright(Image image, int orientation) {
+    if (orientation <= 1 || orientation > 8) return image;
+    const int width = image.width(), height = image.height();
+    const bool from_right = orientation == 2 || orientation == 3 || orientation >= 7;
+    const bool from_bottom = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+    const bool turned = orientation >= 5;
+    Image out(turned ? height : width, turned ? width : height, image.channels(), image.type());
+    const size_t pixel = size_of(image.type()) * size_t(image.channels());
+    const std::byte* const from = image.bytes().data();
+    std::byte* const to = out.bytes().data();
+    parallel_for(size_t(out.height()), 64, [&](size_t row) {
+        for (int column = 0; column < out.width(); ++column) {
+            const int x = turned ? int(row) : column, y = turned ? column : int(row);
+            const int from_y = from_bottom ? height - 1 - y : y, from_x = from_right ? width - 1 - x : x;
+            const size_t at = size_t(from_y) * size_t(width) + size_t(from_x);
+            std::memcpy(to + (row * size_t(out.width()) + size_t(column)) * pixel, from + at * pixel, pixel);
+        }
+    });
+    return out;
+}
+
+Image load_upright_image(const std::filesystem::path& path) {
+    const FileBytes file(path);
+    Image image = decode_image(file.bytes(), path.string());
+    if (starts_with(file.bytes(), "\xff\xd8\xff"))
+        image = upright(std::move(image), jpeg_orientation(file.bytes()));
     file.check();
     return image;
 }

@@ -25,17 +25,49 @@ const unsigned char* jpeg_data_of(Bytes bytes) {
     return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
-/// Whether an Adobe segment (APP14) stands before the first scan: it means that CMYK is stored inverted.
-bool has_adobe_marker(Bytes bytes) {
+/// The first segment of a kind that begins with a text, without marker and length; empty where none stands
+/// before the first scan. Ends at what is damaged.
+Bytes segment_of(Bytes bytes, uint8_t kind, std::string_view magic) {
     const unsigned char* data = jpeg_data_of(bytes);
-    for (size_t at = 2; at + 9 <= bytes.size() && data[at] == 0xff;) {
+    for (size_t at = 2; at + 4 <= bytes.size() && data[at] == 0xff;) {
         const unsigned char marker = data[at + 1];
-        if (marker == 0xda) return false;
-        if (marker == 0xee && std::memcmp(data + at + 4, "Adobe", 5) == 0) return true;
-        at += 2 + (size_t(data[at + 2]) << 8 | data[at + 3]);
+        if (marker == 0xff) {  // padding
+            ++at;
+            continue;
+        }
+        const size_t length = size_t(data[at + 2]) << 8 | data[at + 3];
+        if (marker == 0xda || length < 2 || length > bytes.size() - at - 2) break;
+        const Bytes content = bytes.subspan(at + 4, length - 2);
+        if (marker == kind && starts_with(content, magic)) return content;
+        at += 2 + length;
     }
-    return false;
+    return {};
 }
+
+/// An Adobe segment (APP14) means that CMYK is stored inverted.
+bool has_adobe_marker(Bytes bytes) {
+    return !segment_of(bytes, 0xee, "Adobe").empty();
+}
+
+/// Numbers of a TIFF file, by the order of bytes that its header names; 0 beyond its end.
+class TiffNumbers {
+  public:
+    explicit TiffNumbers(Bytes tiff) : tiff_(tiff), is_little_(starts_with(tiff, "II")) {}
+
+    uint32_t read(size_t at, int bytes) const {
+        if (at > tiff_.size() || tiff_.size() - at < size_t(bytes)) return 0;
+        uint32_t number = 0;
+        for (int i = 0; i < bytes; ++i) {
+            const int place = is_little_ ? bytes - 1 - i : i;
+            number = number << 8 | uint32_t(tiff_[at + size_t(place)]);
+        }
+        return number;
+    }
+
+  private:
+    Bytes tiff_;
+    bool is_little_;
+};
 
 Image rgb_from_cmyk(const Image& cmyk, bool inverted) {
     Image out(cmyk.width(), cmyk.height(), 3, PixelType::u8);
@@ -101,6 +133,27 @@ Image decode_jpeg(Bytes bytes, const std::string& name) {
         handle, name);
     if (cmyk) return rgb_from_cmyk(image, has_adobe_marker(bytes));
     return image;
+}
+
+int jpeg_orientation(Bytes bytes) {
+    constexpr std::string_view magic("Exif\0\0", 6);
+    constexpr size_t entry_bytes = 12;
+    constexpr uint32_t orientation_tag = 0x112, of_16_bits = 3;
+    const Bytes segment = segment_of(bytes, 0xe1, magic);
+    if (segment.empty()) return 1;
+    const Bytes tiff = segment.subspan(magic.size());
+    if (!starts_with(tiff, "II") && !starts_with(tiff, "MM")) return 1;
+    const TiffNumbers numbers(tiff);
+    if (numbers.read(2, 2) != 42) return 1;
+    const size_t directory = numbers.read(4, 4);
+    const size_t count = numbers.read(directory, 2);
+    for (size_t i = 0; i < count; ++i) {
+        const size_t entry = directory + 2 + entry_bytes * i;
+        if (numbers.read(entry, 2) != orientation_tag) continue;
+        const uint32_t value = numbers.read(entry + 2, 2) == of_16_bits ? numbers.read(entry + 8, 2) : 1;
+        return value >= 1 && value <= 8 ? int(value) : 1;
+    }
+    return 1;
 }
 
 std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
