@@ -1,7 +1,12 @@
-// The camera of the picture before, as the picture of a lens is drawn.
+// The camera of the picture before, as the picture of a lens is drawn, and how its pixels are mixed.
 #include "easypbr/app/lens.h"
 
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "easypbr/scene/motion.h"
 
@@ -103,6 +108,71 @@ TEST(DrawnBefore, WithoutALensIsTheCameraItself) {
     EXPECT_EQ(drawn_before(orthographic, lens, lens_map(lens, size)).projection, Projection::orthographic);
     const Camera plain = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
     EXPECT_FALSE(drawn_before(plain, lens, lens_map(lens, size)).intrinsics);
+}
+
+/// One pixel, whose place in a drawn picture of 2 x 2 is (x, y).
+LensMap one_pixel(float x, float y) {
+    LensMap map;
+    map.size = {1, 1};
+    map.drawn_size = {2, 2};
+    map.source = {Vec2(x, y)};
+    return map;
+}
+
+template <class T>
+void set(Image& image, int x, int y, const std::array<int, 4>& pixel) {
+    for (size_t c = 0; c < 4; ++c) image.at<T>(x, y)[c] = T(pixel[c]);
+}
+
+/// Opaque codes of 8 bits with a third of that alpha to their right, the same in both rows.
+template <class T>
+void expect_mixed_by_alpha(PixelType type) {
+    constexpr int one = std::numeric_limits<T>::max() / 255;  // 257 of 16 bits
+    Image drawn(2, 2, 4, type);
+    for (const int y : {0, 1}) {
+        set<T>(drawn, 0, y, {200 * one, 0, 255 * one, 255 * one});
+        set<T>(drawn, 1, y, {100 * one, 170 * one, 255 * one, 85 * one});
+    }
+    // A quarter of the way alpha is 3/4 * 255 + 1/4 * 85 = 212.5; of the colours the second one has the part
+    // (85 / 4) / 212.5 = 1/10.
+    const Image mixed = warp(drawn, one_pixel(0.25f, 0.5f));
+    EXPECT_EQ(mixed.at<T>(0, 0)[0], 190 * one);
+    EXPECT_EQ(mixed.at<T>(0, 0)[1], 17 * one);
+    EXPECT_EQ(mixed.at<T>(0, 0)[2], 255 * one);
+    EXPECT_EQ(mixed.at<T>(0, 0)[3], std::lround(212.5 * one));
+}
+
+TEST(Warp, MixesStraightColourByItsAlpha) {
+    expect_mixed_by_alpha<uint8_t>(PixelType::u8);
+    expect_mixed_by_alpha<uint16_t>(PixelType::u16);
+}
+
+// Nothing has no colour: what is white beside it stays white, as far as anything is seen of it.
+TEST(Warp, LeavesTheColourOfBordersAlone) {
+    Image drawn(2, 2, 4, PixelType::u8);
+    set<uint8_t>(drawn, 0, 0, {255, 255, 255, 255});
+    for (const float x : {0.0f, 0.3f, 0.9f}) {
+        const Image mixed = warp(drawn, one_pixel(x, 0.25f));
+        EXPECT_EQ(mixed.at<uint8_t>(0, 0)[0], 255) << x;
+        EXPECT_EQ(mixed.at<uint8_t>(0, 0)[3], std::lround(255 * (1 - x) * 0.75f)) << x;
+    }
+    const Image none = warp(drawn, one_pixel(1, 1));
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(none.at<uint8_t>(0, 0)[c], 0);
+}
+
+// Premultiplied light is mixed as it is; so are opaque codes: 3/4 of 200 and 1/4 of 100.
+TEST(Warp, MixesOpaqueColourAndLightLinearly) {
+    Image codes(2, 2, 4, PixelType::u8), light(2, 2, 4, PixelType::f32);
+    for (const int y : {0, 1}) {
+        set<uint8_t>(codes, 0, y, {200, 0, 0, 255});
+        set<uint8_t>(codes, 1, y, {100, 0, 0, 255});
+        set<float>(light, 0, y, {4, 0, 0, 1});
+        set<float>(light, 1, y, {2, 0, 0, 0});
+    }
+    EXPECT_EQ(warp(codes, one_pixel(0.25f, 0.5f)).at<uint8_t>(0, 0)[0], 175);
+    EXPECT_EQ(warp(codes, one_pixel(0.25f, 0.5f)).at<uint8_t>(0, 0)[3], 255);
+    EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[0], 3.5f);
+    EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[3], 0.75f);
 }
 
 }  // namespace

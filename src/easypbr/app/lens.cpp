@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "easypbr/core/parallel.h"
 
@@ -94,6 +97,28 @@ Camera drawn_before(const Camera& before, const Camera& now, const LensMap& map)
 namespace {
 
 template <class T>
+T rounded(float value) {
+    if constexpr (std::is_integral_v<T>)
+        return T(std::lround(value));
+    else
+        return value;
+}
+
+/// Straight colour of integer codes counts as far as it covers its pixel: as it is mixed, it is multiplied by
+/// alpha.
+template <class T, class Mix>
+void mix_straight(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
+    const float alpha = mix(near[0][3], near[1][3], near[2][3], near[3][3]);
+    to[3] = rounded<T>(alpha);
+    for (int c = 0; c < 3; ++c) {
+        const auto covered = [&](size_t i) { return float(near[i][c]) * float(near[i][3]); };
+        // A mean of codes; rounding alone may lead beyond the largest.
+        const float color = alpha > 0 ? mix(covered(0), covered(1), covered(2), covered(3)) / alpha : 0;
+        to[c] = rounded<T>(std::clamp(color, 0.0f, float(std::numeric_limits<T>::max())));
+    }
+}
+
+template <class T>
 void warp_pixels(const Image& drawn, const LensMap& map, Image& picture) {
     const int channels = drawn.channels();
     parallel_for(map.source.size(), 1 << 12, [&](size_t i) {
@@ -101,16 +126,20 @@ void warp_pixels(const Image& drawn, const LensMap& map, Image& picture) {
         const int x = std::clamp(int(std::floor(p.x())), 0, drawn.width() - 2);
         const int y = std::clamp(int(std::floor(p.y())), 0, drawn.height() - 2);
         const float u = p.x() - float(x), v = p.y() - float(y);
+        const auto mix = [&](float a, float b, float c, float d) {
+            return (a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v;
+        };
+        const std::array<const T*, 4> near = {drawn.at<T>(x, y), drawn.at<T>(x + 1, y), drawn.at<T>(x, y + 1),
+                                              drawn.at<T>(x + 1, y + 1)};
         T* to = picture.pixels<T>().data() + i * size_t(channels);
-        for (int c = 0; c < channels; ++c) {
-            const auto at = [&](int dx, int dy) { return float(drawn.at<T>(x + dx, y + dy)[c]); };
-            const float value =
-                (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
-            if constexpr (std::is_integral_v<T>)
-                to[c] = T(std::lround(value));
-            else
-                to[c] = value;
+        if constexpr (std::is_integral_v<T>) {
+            const bool is_opaque = channels != 4 || std::ranges::all_of(near, [](const T* pixel) {
+                                       return pixel[3] == std::numeric_limits<T>::max();
+                                   });
+            if (!is_opaque) return mix_straight(near, mix, to);
         }
+        for (int c = 0; c < channels; ++c)
+            to[c] = rounded<T>(mix(near[0][c], near[1][c], near[2][c], near[3][c]));
     });
 }
 

@@ -45,7 +45,8 @@ class LensCache {
     std::vector<double> key_;
 };
 
-/// The picture as the lens shows it: bilinear, 0 where nothing was drawn.
+/// The picture as the lens shows it: bilinear, 0 where nothing was drawn. Of four integer channels the first
+/// three are straight colour, which is mixed by its alpha.
 Image warp(const Image& drawn, const LensMap& map);
 
 /// The nearest drawn pixel of each: for values that must not be mixed. f32 only.
