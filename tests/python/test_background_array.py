@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import easypbr
-from easypbr import Scene, Viewer, shapes
+from easypbr import Camera, Scene, Viewer, shapes
 
 SIZE = (24, 16)
 #: Nothing of the small box at the origin is seen: it lies 31 degrees from the middle of the picture.
@@ -98,3 +98,25 @@ def test_settings_say_what_they_do_not_hold(view, tmp_path, caplog):
     view.save_settings(tmp_path / "a.json")
     assert "a.json does not hold the background image: background.image names no file" in caplog.text
     assert "a.json does not hold the environment map: environment.file names no file" in caplog.text
+
+
+# A photo by the camera's own lens has the distortion: its codes are those of the picture.
+@pytest.mark.parametrize("skew, distortion, model", [
+    (0, (-0.2, 0.05, 0, 0), "brown_conrady"),
+    (0, (0.05, -0.01, 0.002, 0), "fisheye"),
+    (3, None, "brown_conrady"),
+])  # fmt: skip
+@pytest.mark.parametrize("samples", [1, 4])
+def test_lenses_do_not_bend_images(view, skew, distortion, model, samples):
+    photo = np.full((SIZE[1], SIZE[0], 3), 120, np.uint8)
+    photo[::4, :, 1], photo[:, ::3, 2] = 255, 10
+    K = np.array([[30, skew, 11.5], [0, 30, 7.5], [0, 0, 1.0]])
+    T = np.eye(4)
+    T[2, 3] = -50
+    view.camera = Camera.from_opencv(K, T, SIZE, distortion=distortion, model=model)
+    view.load_background_image(photo)
+    picture = view.render(samples=samples)
+    # The box of a thousandth is seen in the middle, if at all.
+    picture[6:10, 10:14, :3] = photo[6:10, 10:14]
+    np.testing.assert_array_equal(picture[..., :3], photo)
+    assert (picture[..., 3] == 255).all()

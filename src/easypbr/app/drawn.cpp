@@ -8,6 +8,7 @@ namespace easypbr::app {
 
 Image PictureFinish::apply(Image drawn) const {
     Image picture = lens->is_identity() ? std::move(drawn) : warp(drawn, *lens);
+    if (backdrop) picture = over_backdrop(picture, *backdrop);
     if (annotate) annotate(picture);
     return picture;
 }

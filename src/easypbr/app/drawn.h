@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "easypbr/app/backdrop.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
@@ -22,9 +24,10 @@ struct Device {
     uint64_t sum = 0;                    ///< that frames are added to; another number is another one
 };
 
-/// What becomes of a picture's pixels once they are read: the lens, then the annotation.
+/// What becomes of a picture's pixels once they are read: the lens, the image behind it, then the annotation.
 struct PictureFinish {
     std::shared_ptr<const LensMap> lens = std::make_shared<const LensMap>();
+    std::optional<Backdrop> backdrop;      ///< of a picture drawn without its background image
     std::function<void(Image&)> annotate;  ///< empty: there is no annotation
 
     Image apply(Image drawn) const;

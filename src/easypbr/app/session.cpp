@@ -189,6 +189,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
         motion = std::move(as_drawn);
     }
     if (drawn.camera_.is_warped()) {
+        if (picture && !prepared.options.layers) put_image_behind(drawn, prepared);
         prepared.options.size = drawn.lens().drawn_size;
         prepared.resolved.camera.distortion.reset();
         prepared.resolved.camera.intrinsics = drawn.lens().drawn.intrinsics;
@@ -201,6 +202,17 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
     if (picture) drawn.picture_ = ++device_->picture;
     if (surfaces) drawn.surfaces_ = device_->surfaces;
     return drawn;
+}
+
+void Session::put_image_behind(Drawn& drawn, Prepared& prepared) {
+    const BackgroundSettings& background = prepared.resolved.settings.background;
+    if (background.mode != BackgroundMode::image || !prepared.images.background) return;
+    render::DrawOptions& options = prepared.options;
+    drawn.finish_.backdrop =
+        backdrops_.get(background, prepared.images.background, options.size, options.encoding);
+    options.without_image = true;
+    // Alpha of 8 bits is too coarse for what is mixed in linear light: near black a step is 13 codes.
+    if (options.encoding == Encoding::srgb8) options.encoding = Encoding::srgb16;
 }
 
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/app/backdrop.h"
 #include "easypbr/app/drawn.h"
 #include "easypbr/app/kept_device.h"
 #include "easypbr/app/latched_content.h"
@@ -228,6 +229,9 @@ class Session {
     /// begins from by what has to be drawn; outdates what was drawn before. Returns what will be drawn, a
     /// picture, surfaces, or both.
     Drawn begin(Prepared& prepared, bool picture, bool surfaces);
+    /// Of a picture that a lens warps: leaves a background image out of what is drawn, and puts it behind the
+    /// warped picture. It is in the picture's pixels, which the lens made.
+    void put_image_behind(Drawn& drawn, Prepared& prepared);
     /// What lies over the picture.
     void annotate(Drawn& drawn, const Prepared& prepared);
     TiledPicture tiled(const Prepared& prepared) const;
@@ -249,6 +253,7 @@ class Session {
     std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
     LatchedContent latched_content_;
     LensCache lenses_;
+    BackdropCache backdrops_;
     MotionMemory motion_;
     SceneWarnings warnings_;
     std::vector<render::CustomPass> passes_;

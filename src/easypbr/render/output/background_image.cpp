@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
 
 namespace easypbr::render {
 namespace {
@@ -78,6 +80,37 @@ const Target& BackgroundImage::light(const Vec2i& picture, int most_side) {
     light_ = std::move(light);
     halvings_ = wanted;
     return light_;
+}
+
+Image BackgroundImage::covering(const Vec2i& picture) {
+    const Target& from = light(picture, most_native_side);
+    const std::span<const Vec4> texels = from.pixels<const Vec4>();
+    Frame frame;
+    frame.size = frame.picture_size = picture;
+    const Vec4 place = uv(frame);
+    Image covered(picture.x(), picture.y(), 4, PixelType::f32);
+    parallel_for(size_t(picture.y()), 8, [&](size_t row) {
+        // As linear filtering does it, clamped at the edges.
+        const auto between = [](float part, int count) {
+            const float at = std::clamp(part * float(count) - 0.5f, 0.0f, float(count - 1));
+            const int first = int(at);
+            return std::tuple(first, std::min(first + 1, count - 1), at - float(first));
+        };
+        const float v = (float(row) + 0.5f) / float(picture.y()) * place.y() + place.w();
+        const auto [top, bottom, below] = between(v, from.height());
+        for (int x = 0; x < picture.x(); ++x) {
+            const float u = (float(x) + 0.5f) / float(picture.x()) * place.x() + place.z();
+            const auto [left, right, beside] = between(u, from.width());
+            const auto texel = [&](int i, int j) -> const Vec4& {
+                return texels[size_t(j) * size_t(from.width()) + size_t(i)];
+            };
+            const Vec4 upper = texel(left, top) * (1 - beside) + texel(right, top) * beside,
+                       lower = texel(left, bottom) * (1 - beside) + texel(right, bottom) * beside;
+            const Vec4 light = upper * (1 - below) + lower * below;
+            std::copy_n(light.data(), 4, covered.at<float>(x, int(row)));
+        }
+    });
+    return covered;
 }
 
 }  // namespace easypbr::render

@@ -25,6 +25,10 @@ class BackgroundImage {
     /// Scale and offset of the frame's texture coordinates with which that light covers the picture, centred,
     /// nothing distorted.
     Vec4 uv(const Frame& frame) const;
+    /// The same in the pixels of a whole picture: RGBA, f32.
+    Image covering(const Vec2i& picture);
+    /// Longest side of light() that native shaders read.
+    static constexpr int most_native_side = 1 << 15;
 
   private:
     int halvings(const Vec2i& picture, int most_side) const;

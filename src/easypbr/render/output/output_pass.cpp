@@ -39,13 +39,6 @@ float exposure_of(const Frame& frame, Encoding encoding) {
     return encoding == Encoding::scene_linear ? 1.0f : frame.resolved->exposure;
 }
 
-Vec4 background_color(const Frame& frame) {
-    const BackgroundSettings& background = frame.resolved->settings.background;
-    if (background.mode == BackgroundMode::transparent || background.shows_environment()) return Vec4::Zero();
-    const Vec3 c = linear_from_srgb(background.color);
-    return {c.x(), c.y(), c.z(), 1};
-}
-
 void add_image(const BackgroundImage& background, const Frame& frame, const Target& light,
                ShaderInputs& values) {
     values.define("BACKGROUND_IMAGE");
@@ -57,9 +50,6 @@ void add_image(const BackgroundImage& background, const Frame& frame, const Targ
 bool has_shadow(const LitPicture& lit, Encoding encoding) {
     return lit.caught && encoding != Encoding::scene_linear;
 }
-
-/// Longest side of a background image that native shaders read.
-constexpr int most_native_side = 1 << 15;
 
 void add_lit(const LitPicture& lit, const char* radiance, ShaderInputs& values) {
     if (lit.overlay) values.define("OVERLAY");
@@ -83,8 +73,8 @@ ShaderInputs sample_inputs(const Frame& frame, const LitPicture& lit, Encoding e
 }
 
 /// The background as the picture holds it.
-Vec4 background_code(const Frame& frame, Encoding encoding) {
-    Vec4 code = background_color(frame);
+Vec4 background_code(const Vec4& behind, Encoding encoding) {
+    Vec4 code = behind;
     if (encoding != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(code.head<3>()));
     return code;
 }
@@ -140,6 +130,17 @@ gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPic
 
 }  // namespace
 
+bool OutputPass::is_transparent(const Frame& frame) const {
+    return without_image_ || frame.resolved->settings.background.mode == BackgroundMode::transparent;
+}
+
+Vec4 OutputPass::behind(const Frame& frame) const {
+    const BackgroundSettings& background = frame.resolved->settings.background;
+    if (is_transparent(frame) || background.shows_environment()) return Vec4::Zero();
+    const Vec3 c = linear_from_srgb(background.color);
+    return {c.x(), c.y(), c.z(), 1};
+}
+
 ShaderInputs OutputPass::display_inputs(const Frame& frame, const LitPicture& lit, const Target* sum) const {
     ShaderInputs values;
     values.define(tone_defines(frame, lit, encoding_));
@@ -147,7 +148,7 @@ ShaderInputs OutputPass::display_inputs(const Frame& frame, const LitPicture& li
     values.set("u_size", Vec2(frame.size.cast<float>()));
     values.set("u_exposure", exposure_of(frame, encoding_));
     values.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
-    values.set("u_background", background_color(frame));
+    values.set("u_background", behind(frame));
     if (has_shadow(lit, encoding_)) {
         values.define("SHADOW");
         values.set("u_shadow_share", shadow_share_);
@@ -162,7 +163,7 @@ ShaderInputs OutputPass::display_inputs(const Frame& frame, const LitPicture& li
     return values;
 }
 
-void OutputPass::begin(Vec2i size, Encoding encoding) {
+void OutputPass::begin(Vec2i size, Encoding encoding, bool without_image) {
     const gl::Format format = format_of(encoding);
     if (picture_.size() != size || picture_.format() != format) {
         picture_ = Target(format, size);
@@ -174,6 +175,7 @@ void OutputPass::begin(Vec2i size, Encoding encoding) {
         sum_framebuffer_ = gl::Framebuffer();
     }
     encoding_ = encoding;
+    without_image_ = without_image;
 }
 
 const gl::Framebuffer& OutputPass::framebuffer() const {
@@ -352,7 +354,7 @@ void OutputPass::finish_by_driver(const Frame& frame, const LitPicture& lit, Bac
         light.attachment().sampling(gl::Filtering::linear);
         add_image(*background, frame, light, values);
     } else {
-        const Vec4 code = background_code(frame, encoding_);
+        const Vec4 code = background_code(behind(frame), encoding_);
         const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
         picture_framebuffer_.clear_color(0, rgba);
         state = limited_to(sum ? drawn_ : lit.covered, frame, lit);
@@ -367,9 +369,10 @@ void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, Back
     const PixelRect area = background || is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
     ShaderInputs values = display_inputs(frame, lit, sum);
     if (background)
-        add_image(*background, frame, background->light(frame.picture_size, most_native_side), values);
+        add_image(*background, frame,
+                  background->light(frame.picture_size, BackgroundImage::most_native_side), values);
     picture_.write(picture_.whole());
-    fill_around(picture_, area, background_code(frame, encoding_));
+    fill_around(picture_, area, background_code(behind(frame), encoding_));
     display_.shade(values, {.target = &picture_, .area = area}, transfers_);
     if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit, exact);
 }
@@ -401,7 +404,7 @@ ShaderInputs OutputPass::edge_inputs(const Frame& frame, const LitPicture& lit, 
     ShaderInputs values;
     values.set("u_size", Vec2(frame.size.cast<float>()));
     values.set("u_color", aliased_);
-    if (frame.resolved->settings.background.mode == BackgroundMode::transparent) values.define("ALPHA");
+    if (is_transparent(frame)) values.define("ALPHA");
     if (lit.lines) {
         values.define("LINES");
         values.set("u_nearest_line", *lit.lines);

@@ -23,8 +23,9 @@ class OutputPass {
     /// The transfers must outlive this.
     explicit OutputPass(Transfers& transfers) : transfers_(transfers) {}
 
-    /// Forgets the sum and makes targets for this size and encoding.
-    void begin(Vec2i size, Encoding encoding);
+    /// Forgets the sum and makes targets for this size and encoding. `without_image`: of a background that is
+    /// an image; the picture is transparent.
+    void begin(Vec2i size, Encoding encoding, bool without_image);
     /// Whether the picture is in host memory alone: write_exact() leaves it there.
     bool is_finished_natively() const { return picture_.is_ahead(); }
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample. `surfaces`: the frame's.
@@ -58,6 +59,9 @@ class OutputPass {
 
   private:
     void blur_edges(const Frame& frame, const LitPicture& lit, const GBuffer* exact);
+    bool is_transparent(const Frame& frame) const;
+    /// Linear display light behind everything, premultiplied by alpha.
+    Vec4 behind(const Frame& frame) const;
     /// What finish() reads; null: the radiance of the only frame, or the mean.
     const Target* sum_of(const Frame& frame) const;
     void finish_by_driver(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
@@ -80,6 +84,7 @@ class OutputPass {
     Transfers& transfers_;
     PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
+    bool without_image_ = false;  ///< see begin()
     Target sum_, picture_, aliased_;
     Target shadow_share_;       ///< R32F, the sum of all frames
     RadianceMean mean_;         ///< of frames whose radiance is averaged

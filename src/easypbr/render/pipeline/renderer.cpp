@@ -118,7 +118,8 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     has_layers_ = false;
     pipeline_.begin(options.size);
     camera_ = resolved.camera;
-    output_.begin(options.size, options.encoding);
+    const bool has_image = resolved.settings.background.mode == BackgroundMode::image;
+    output_.begin(options.size, options.encoding, options.without_image && has_image);
     pipeline_.prepare_environment(resolved);
     picture_ = std::make_unique<Picture>(scene, resolved, options, images);
     try {
@@ -248,8 +249,9 @@ void Renderer::finish() {
         if (custom_.empty() && !exact && !picture.holds_surfaces) release_targets();
     }
     const LitPicture shown = timer.run("output", [&] {
-        return output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images),
-                              pipeline_.targets(), exact);
+        BackgroundImage* background =
+            picture.options.without_image ? nullptr : background_image(picture.resolved, picture.images);
+        return output_.finish(picture.frame, picture.lit, background, pipeline_.targets(), exact);
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
     if (exact) timer.run("exact", [&] { draw_exact(shown); });

@@ -34,6 +34,8 @@ struct DrawOptions {
     bool surfaces = false;   ///< read_surfaces() and read_layer() will be called: where the picture's last
                              ///< frame does not hold what the pixels' centres see, that is drawn once more;
                              ///< with `layers` they hold it, of a tile too
+    bool without_image = false;  ///< alpha is below 1 where a background image would be seen: whoever reads
+                                 ///< the picture puts that behind it
     std::shared_ptr<const Motion> motion = {};  ///< since the picture before: blurs what moved, in several
                                                 ///< samples
 };
