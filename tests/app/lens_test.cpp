@@ -175,5 +175,19 @@ TEST(Warp, MixesOpaqueColourAndLightLinearly) {
     EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[3], 0.75f);
 }
 
+// Next to a marked pixel the nearest is taken, marked or not.
+TEST(Warp, TakesTheNearestPixelWhereNothingMayMix) {
+    Image codes(2, 2, 4, PixelType::u8), marks(2, 2, 1, PixelType::u8);
+    for (const int y : {0, 1}) {
+        set<uint8_t>(codes, 0, y, {200, 0, 0, 255});
+        set<uint8_t>(codes, 1, y, {100, 0, 0, 255});
+    }
+    const LensMap left = one_pixel(0.25f, 0.5f), right = one_pixel(0.75f, 0.5f);
+    EXPECT_EQ(warp(codes, left, &marks).at<uint8_t>(0, 0)[0], 175);
+    marks.at<uint8_t>(1, 1)[0] = 255;
+    EXPECT_EQ(warp(codes, left, &marks).at<uint8_t>(0, 0)[0], 200);
+    EXPECT_EQ(warp(codes, right, &marks).at<uint8_t>(0, 0)[0], 100);
+}
+
 }  // namespace
 }  // namespace easypbr::app::lens_test

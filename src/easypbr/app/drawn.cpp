@@ -7,7 +7,7 @@
 namespace easypbr::app {
 
 Image PictureFinish::apply(Image drawn) const {
-    Image picture = lens->is_identity() ? std::move(drawn) : warp(drawn, *lens);
+    Image picture = lens->is_identity() ? std::move(drawn) : warp(drawn, *lens, exact.get());
     if (backdrop) picture = over_backdrop(picture, *backdrop);
     if (annotate) annotate(picture);
     return picture;

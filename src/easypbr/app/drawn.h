@@ -27,6 +27,7 @@ struct Device {
 /// What becomes of a picture's pixels once they are read: the lens, the image behind it, then the annotation.
 struct PictureFinish {
     std::shared_ptr<const LensMap> lens = std::make_shared<const LensMap>();
+    std::shared_ptr<const Image> exact;    ///< render::Renderer::exact_pixels(), where a lens warps; or null
     std::optional<Backdrop> backdrop;      ///< of a picture drawn without its background image
     std::function<void(Image&)> annotate;  ///< empty: there is no annotation
 

@@ -118,8 +118,14 @@ void mix_straight(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
     }
 }
 
+/// Whether one of four neighbours, the upper left one at (x, y), is marked.
+bool touches(const Image& marks, int x, int y) {
+    const uint8_t *upper = marks.at<uint8_t>(x, y), *lower = marks.at<uint8_t>(x, y + 1);
+    return upper[0] || upper[1] || lower[0] || lower[1];
+}
+
 template <class T>
-void warp_pixels(const Image& drawn, const LensMap& map, Image& picture) {
+void warp_pixels(const Image& drawn, const LensMap& map, const Image* exact, Image& picture) {
     const int channels = drawn.channels();
     parallel_for(map.source.size(), 1 << 12, [&](size_t i) {
         const Vec2 p = map.source[i];
@@ -132,6 +138,10 @@ void warp_pixels(const Image& drawn, const LensMap& map, Image& picture) {
         const std::array<const T*, 4> near = {drawn.at<T>(x, y), drawn.at<T>(x + 1, y), drawn.at<T>(x, y + 1),
                                               drawn.at<T>(x + 1, y + 1)};
         T* to = picture.pixels<T>().data() + i * size_t(channels);
+        if (exact && touches(*exact, x, y)) {
+            std::copy_n(drawn.pixels<T>().data() + map.nearest(i) * size_t(channels), channels, to);
+            return;
+        }
         if constexpr (std::is_integral_v<T>) {
             const bool is_opaque = channels != 4 || std::ranges::all_of(near, [](const T* pixel) {
                                        return pixel[3] == std::numeric_limits<T>::max();
@@ -157,18 +167,18 @@ Image pick_nearest(const Image& drawn, const LensMap& map) {
     return picture;
 }
 
-Image warp(const Image& drawn, const LensMap& map) {
+Image warp(const Image& drawn, const LensMap& map, const Image* exact) {
     if (map.is_identity()) return drawn;
     Image picture(map.size.x(), map.size.y(), drawn.channels(), drawn.type());
     switch (drawn.type()) {
         case PixelType::u8:
-            warp_pixels<uint8_t>(drawn, map, picture);
+            warp_pixels<uint8_t>(drawn, map, exact, picture);
             break;
         case PixelType::u16:
-            warp_pixels<uint16_t>(drawn, map, picture);
+            warp_pixels<uint16_t>(drawn, map, exact, picture);
             break;
         case PixelType::f32:
-            warp_pixels<float>(drawn, map, picture);
+            warp_pixels<float>(drawn, map, exact, picture);
             break;
     }
     return picture;

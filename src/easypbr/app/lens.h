@@ -46,8 +46,9 @@ class LensCache {
 };
 
 /// The picture as the lens shows it: bilinear, 0 where nothing was drawn. Of four integer channels the first
-/// three are straight colour, which is mixed by its alpha.
-Image warp(const Image& drawn, const LensMap& map);
+/// three are straight colour, which is mixed by its alpha. `exact`: of the drawn picture's size, u8, one
+/// channel; where one of the four neighbours has not 0 the nearest pixel is taken. Null: nowhere.
+Image warp(const Image& drawn, const LensMap& map, const Image* exact = nullptr);
 
 /// The nearest drawn pixel of each: for values that must not be mixed. f32 only.
 Image pick_nearest(const Image& drawn, const LensMap& map);

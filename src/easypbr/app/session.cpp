@@ -189,6 +189,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
         motion = std::move(as_drawn);
     }
     if (drawn.camera_.is_warped()) {
+        prepared.options.exact_pixels = picture;
         if (picture && !prepared.options.layers) put_image_behind(drawn, prepared);
         prepared.options.size = drawn.lens().drawn_size;
         prepared.resolved.camera.distortion.reset();
@@ -215,6 +216,10 @@ void Session::put_image_behind(Drawn& drawn, Prepared& prepared) {
     if (options.encoding == Encoding::srgb8) options.encoding = Encoding::srgb16;
 }
 
+void Session::keep_exact(Drawn& drawn, const Image& exact) {
+    if (!exact.empty()) drawn.finish_.exact = std::make_shared<const Image>(exact);
+}
+
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {
     Annotation annotation = annotation_of(prepared.scene, prepared.resolved.settings);
     warnings_.check(annotation, prepared.resolved.settings.annotation, drawn.lens().size);
@@ -238,10 +243,14 @@ Drawn Session::draw_once(const PictureOptions& options) {
     Drawn drawn = begin(prepared, true, false);
     const gl::ContextScope scope(*device_->context);
     const Stopwatch watch(timing_.draw);
-    if (const TiledPicture picture = tiled(prepared); picture.is_whole())
+    if (const TiledPicture picture = tiled(prepared); picture.is_whole()) {
         device_->renderer->draw(prepared.scene, prepared.resolved, prepared.options, prepared.images);
-    else
-        drawn.tiled_ = std::make_shared<const Image>(picture.draw(*device_->renderer));
+        keep_exact(drawn, device_->renderer->exact_pixels());
+    } else {
+        Image exact;
+        drawn.tiled_ = std::make_shared<const Image>(picture.draw(*device_->renderer, exact));
+        keep_exact(drawn, exact);
+    }
     gl::Context::check();
     annotate(drawn, prepared);
     motion_.keep(prepared.scene, drawn.camera());
@@ -307,6 +316,7 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
     if (finish || refined_->is_complete) {
         renderer.finish();
         refined_->drawn = refined_->frames_drawn;
+        keep_exact(refined_->drawn, renderer.exact_pixels());
         refined_->drawn.picture_ = ++device_->picture;
     }
     gl::Context::check();
@@ -409,11 +419,13 @@ Drawn Session::draw_surfaces_once(const PictureOptions& options, bool picture, c
     Drawn drawn = begin(prepared, with_picture, true);
     const gl::ContextScope scope(*device_->context);
     const Stopwatch watch(timing_.draw);
-    if (with_picture)
+    if (with_picture) {
         device_->renderer->draw(prepared.scene, prepared.resolved, prepared.options, prepared.images);
-    else
+        keep_exact(drawn, device_->renderer->exact_pixels());
+    } else {
         device_->renderer->draw_surfaces(moment ? moment->scene : prepared.scene, prepared.resolved,
                                          prepared.options.size, prepared.images);
+    }
     gl::Context::check();
     annotate(drawn, prepared);
     if (!moment) latch_from(prepared);

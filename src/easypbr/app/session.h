@@ -232,6 +232,8 @@ class Session {
     /// Of a picture that a lens warps: leaves a background image out of what is drawn, and puts it behind the
     /// warped picture. It is in the picture's pixels, which the lens made.
     void put_image_behind(Drawn& drawn, Prepared& prepared);
+    /// What of a warped picture that was just drawn must not be mixed; empty: nothing.
+    static void keep_exact(Drawn& drawn, const Image& exact);
     /// What lies over the picture.
     void annotate(Drawn& drawn, const Prepared& prepared);
     TiledPicture tiled(const Prepared& prepared) const;

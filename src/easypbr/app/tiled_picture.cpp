@@ -76,7 +76,7 @@ void TiledPicture::draw_tile(render::Renderer& renderer, const Tile& tile) const
     renderer.draw(scene, resolved, part, images);
 }
 
-Image TiledPicture::draw(render::Renderer& renderer) const {
+Image TiledPicture::draw(render::Renderer& renderer, Image& exact) const {
     Image picture;
     StepProgress progress("picture", "tile", int(tiles.size()));
     int drawn_tiles = 0;
@@ -87,6 +87,8 @@ Image TiledPicture::draw(render::Renderer& renderer) const {
         const Image drawn =
             renderer.read_picture({corner.x(), corner.y(), tile.inner.width, tile.inner.height});
         place(drawn, {0, 0}, tile, options.size, picture);
+        if (const Image& part = renderer.exact_pixels(); !part.empty())
+            place(part, corner, tile, options.size, exact);
     }
     return picture;
 }

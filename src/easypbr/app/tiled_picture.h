@@ -29,8 +29,9 @@ struct TiledPicture {
     /// There is nothing to put together: the renderer draws it at once.
     bool is_whole() const { return tiles.size() == 1; }
 
-    /// Both need the context current.
-    Image draw(render::Renderer& renderer) const;
+    /// Both need the context current. `exact`: render::Renderer::exact_pixels() of the whole picture, where
+    /// options.exact_pixels asks for them.
+    Image draw(render::Renderer& renderer, Image& exact) const;
     /// `surfaces`: of the whole picture, where options.surfaces asks for them.
     std::vector<Image> draw_layers(render::Renderer& renderer, const std::vector<render::Layer>& layers,
                                    render::SurfaceFrame& surfaces) const;

@@ -115,4 +115,15 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
     return image;
 }
 
+Image pixels_of(SurfaceKind kind, const GBuffer& targets, Transfers& transfers) {
+    const std::vector<float> depth = targets.depth.read<float>(transfers);
+    const auto material = targets.material.read<uint8_t>(transfers);
+    Image pixels(targets.size().x(), targets.size().y(), 1, PixelType::u8);
+    uint8_t* to = pixels.pixels<uint8_t>().data();
+    parallel_for(depth.size(), 1 << 14, [&](size_t i) {
+        if (depth[i] > 0 && material[4 * i + 3] == uint8_t(kind)) to[i] = 255;
+    });
+    return pixels;
+}
+
 }  // namespace easypbr::render

@@ -7,6 +7,7 @@
 #include "easypbr/core/image.h"
 #include "easypbr/render/drawables/drawable_scene.h"
 #include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/camera.h"
 
 namespace easypbr::render {
@@ -37,5 +38,8 @@ std::string layer_formerly(const std::string& name);
 /// ArgumentError for ids that were not drawn.
 Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
                  const std::vector<ElementSources>& sources, Transfers& transfers);
+
+/// Where surfaces of a kind are seen: u8, one channel, 255 there, else 0.
+Image pixels_of(SurfaceKind kind, const GBuffer& targets, Transfers& transfers);
 
 }  // namespace easypbr::render

@@ -115,6 +115,7 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
         throw ArgumentError(fmt::format("samples: expected 1 or more, got {}", options.samples));
     picture_.reset();
     kept_.reset();
+    exact_pixels_ = Image();
     has_layers_ = false;
     pipeline_.begin(options.size);
     camera_ = resolved.camera;
@@ -255,6 +256,8 @@ void Renderer::finish() {
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
     if (exact) timer.run("exact", [&] { draw_exact(shown); });
+    if (exact && picture.options.exact_pixels)
+        exact_pixels_ = pixels_of(SurfaceKind::exact, pipeline_.targets(), pipeline_.transfers());
     if (picture.contents.custom) draw_custom_over_picture();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { draw_kept(); });

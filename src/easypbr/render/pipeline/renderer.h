@@ -36,6 +36,7 @@ struct DrawOptions {
                              ///< with `layers` they hold it, of a tile too
     bool without_image = false;  ///< alpha is below 1 where a background image would be seen: whoever reads
                                  ///< the picture puts that behind it
+    bool exact_pixels = false;   ///< exact_pixels() will be called
     std::shared_ptr<const Motion> motion = {};  ///< since the picture before: blurs what moved, in several
                                                 ///< samples
 };
@@ -94,6 +95,9 @@ class Renderer {
     /// The first `width` x `height` pixels only: forces the picture to be finished.
     Image read_picture(int width, int height) const { return read_picture({0, 0, width, height}); }
     Image read_picture(const PixelRect& area) const;
+    /// Where the picture, drawn with `exact_pixels`, shows colours of tables that nothing may mix with:
+    /// u8, one channel, 255 there, else 0. Empty where nothing has such colours.
+    const Image& exact_pixels() const { return exact_pixels_; }
     /// Begins to read the picture back, as it is now: an image of its size and kind, whose bytes
     /// readback.finish() fills. Nothing is pending of a picture in host memory, which the image is at once.
     Image begin_reading(gl::Readback& readback) const;
@@ -170,6 +174,7 @@ class Renderer {
     DrawableCache drawables_{pipeline_.caches().spacings};
     CustomPasses custom_;
     OutputPass output_{pipeline_.transfers()};
+    Image exact_pixels_;                           ///< of the last picture
     bool has_layers_ = false;                      ///< the targets hold what read_layer() reads
     std::unique_ptr<KeptSurfaces> kept_;           ///< of a picture that was drawn with `surfaces`
     Camera camera_;                                ///< that the targets were seen by
