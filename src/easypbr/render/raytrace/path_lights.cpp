@@ -31,23 +31,15 @@ struct Found {
     std::vector<float> sum, number;
 };
 
-/// Of blocks one is chosen as lights are within a block.
-void add_block(uint32_t first, Found& found, size_t i, ChosenLight& so_far) {
-    const float sum = found.sum[i];
-    if (so_far.all == 0) {
+/// Of blocks one is chosen as lights are within a block: by a number in [0, 1) of its own.
+void add_block(uint32_t first, const Found& found, size_t i, float number, ChosenLight& so_far) {
+    const float sum = found.sum[i], all = so_far.all + sum;
+    if (so_far.all == 0)
         so_far = {found.light.at(i), sum, first + uint32_t(found.number[i]), found.way.at(i)};
-        return;
-    }
-    const float all = so_far.all + sum, part = sum / all;
-    const bool taken = found.choice[i] < part;
-    const float left = taken ? found.choice[i] / part : (found.choice[i] - part) / (1 - part);
-    so_far.light = taken ? Vec3(found.light.at(i) * (all / sum)) : Vec3(so_far.light * (all / so_far.all));
-    if (taken) {
-        so_far.index = first + uint32_t(found.number[i]);
-        so_far.way = found.way.at(i);
-    }
-    so_far.all = all;
-    found.choice[i] = std::min(left, below_one);
+    else if (number * all < sum)
+        so_far = {found.light.at(i) * (all / sum), all, first + uint32_t(found.number[i]), found.way.at(i)};
+    else
+        so_far = {so_far.light * (all / so_far.all), all, so_far.index, so_far.way};
 }
 
 template <class Stream>
@@ -120,11 +112,12 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
     chosen.assign(batch.count, {});
     if (blocks_.empty()) return;
     Found found(PathBatch::rounded_up(batch.count));
-    const PathVectors<2> choices = batch.points(depth, PathSampler::light_and_lobe);
-    std::copy_n(choices.component(0), choices.room(), found.choice.begin());
     found.emitter = batch.points(depth, PathSampler::emitter_point);
-    for (const Block& block : blocks_) {
-        const int count = int(batch.count);
+    const int count = int(batch.count);
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+        const Block& block = blocks_[b];
+        const PathVectors<2> numbers = batch.points(depth, PathSampler::choice_in_block(uint32_t(b)));
+        std::copy_n(numbers.component(0), numbers.room(), found.choice.begin());
         if (batch.extensions)
             native::run(block.extended.get(), stream_of<native::path_lamps_extended_stream>(batch, found),
                         count);
@@ -132,7 +125,7 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
             native::run((caught ? block.of_catcher : block.uniforms).get(),
                         stream_of<native::path_lamps_stream>(batch, found), count);
         for (size_t i = 0; i < batch.count; ++i) {
-            if (found.sum[i] > 0) add_block(block.first, found, i, chosen[i]);
+            if (found.sum[i] > 0) add_block(block.first, found, i, numbers.at(i).y(), chosen[i]);
         }
     }
 }

@@ -35,6 +35,9 @@ class PathSampler {
         roulette,
         color_channel
     };
+    /// The pair by which a block of lights is chosen from. The first number chooses within the block, the
+    /// second one between it and those before; of block 0, which has none before it, that chooses the lobe.
+    static constexpr uint32_t choice_in_block(uint32_t block) { return block << 20 | light_and_lobe; }
 
     /// What a pixel's column or row adds to its numbers.
     struct Axis {
