@@ -1,5 +1,4 @@
 // The file that a setting names is that of the working folder where it was given.
-#include "easypbr/scene/named_file.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,6 +11,14 @@
 #include "easypbr/core/error.h"
 
 namespace easypbr {
+
+/// What tells whether the file that an image was read from has changed since.
+struct FileState {
+    std::uintmax_t size = 0;               ///< in bytes
+    std::filesystem::file_time_type time;  ///< when it was changed last
+
+    bool operator==(const FileState&) const = default;
+};
 
 /// Type of one channel. u8 and u16 colour is sRGB-encoded, f32 colour is linear.
 enum class PixelType { u8, u16, f32 };

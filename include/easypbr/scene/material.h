@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "easypbr/core/file_state.h"
 #include "easypbr/core/image.h"
 #include "easypbr/core/math.h"
 #include "easypbr/scene/array.h"

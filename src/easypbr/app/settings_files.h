@@ -11,11 +11,11 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/environment.h"
-#include "easypbr/scene/named_file.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
 struct Settings;
+class NamedFile;
 }
 
 namespace easypbr::app {

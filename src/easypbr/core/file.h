@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "easypbr/core/file_state.h"
+#include "easypbr/core/image.h"
 #include "easypbr/core/guarded_map.h"
 
 namespace easypbr {

@@ -13,7 +13,7 @@
 #include "easypbr/scene/auto.h"
 #include "easypbr/scene/colormap.h"
 #include "easypbr/scene/fields.h"
-#include "easypbr/scene/named_file.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::detail {
 

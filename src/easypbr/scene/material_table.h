@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "easypbr/scene/material.h"
-#include "easypbr/scene/named_file.h"
 
 namespace easypbr {
 
 struct MaterialSettings;
+class NamedFile;
 
 struct MaterialNumber {
     const char* name;  ///< of the member, and of the attribute in Python

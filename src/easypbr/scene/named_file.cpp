@@ -1,4 +1,4 @@
-#include "easypbr/scene/named_file.h"
+#include "easypbr/scene/settings.h"
 
 #include <filesystem>
 #include <system_error>

@@ -115,7 +115,7 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
     return image;
 }
 
-Image pixels_of(SurfaceKind kind, const GBuffer& targets, Transfers& transfers) {
+Image mask_of_kind(SurfaceKind kind, const GBuffer& targets, Transfers& transfers) {
     const std::vector<float> depth = targets.depth.read<float>(transfers);
     const auto material = targets.material.read<uint8_t>(transfers);
     Image pixels(targets.size().x(), targets.size().y(), 1, PixelType::u8);

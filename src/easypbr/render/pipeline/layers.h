@@ -40,6 +40,6 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
                  const std::vector<ElementSources>& sources, Transfers& transfers);
 
 /// Where surfaces of a kind are seen: u8, one channel, 255 there, else 0.
-Image pixels_of(SurfaceKind kind, const GBuffer& targets, Transfers& transfers);
+Image mask_of_kind(SurfaceKind kind, const GBuffer& targets, Transfers& transfers);
 
 }  // namespace easypbr::render

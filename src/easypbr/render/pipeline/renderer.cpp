@@ -257,7 +257,7 @@ void Renderer::finish() {
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, picture.poses_before, 1);
     if (exact) timer.run("exact", [&] { draw_exact(shown); });
     if (exact && picture.options.exact_pixels)
-        exact_pixels_ = pixels_of(SurfaceKind::exact, pipeline_.targets(), pipeline_.transfers());
+        exact_pixels_ = mask_of_kind(SurfaceKind::exact, pipeline_.targets(), pipeline_.transfers());
     if (picture.contents.custom) draw_custom_over_picture();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { draw_kept(); });
