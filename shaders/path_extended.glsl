@@ -69,7 +69,31 @@ vec3 scattered_above(vec3 l, Surface s) {
     return under_layers(scattered_by_base(l, h, n_dot_l, s), l, h, n_dot_l, keep, s);
 }
 
-// `light` of a direction above the face, or what roughness spreads of the BTDF straight through, times the cosine.
+// What stays in a volume at a facet: Fresnel's reflectance is the same from both sides, at the angle outside.
+float kept_part(float outer_cosine, Surface s) {
+    return luminance(F_schlick90(outer_cosine, s.extension.f0, vec3(s.extension.f90)));
+}
+
+// What one facet lets into a volume: of what s.through says of all together, by Fresnel's reflectance at it.
+vec3 passed_by(Surface s, vec3 h) {
+    float of_all = 1.0 - luminance(s.energy.single), of_facet = 1.0 - kept_part(max(dot(h, s.view), 0.0), s);
+    return is_clear(s) ? s.through : s.through * of_facet / max(of_all, 1e-6);
+}
+
+// Of light that a lamp sends from within a rough volume: the directions in which paths enter it (Walter et al. 2007, equation
+// 17), times what they take with them, over the square of the index: all of the light leaves that the lamp sends to the face.
+vec3 entering(vec3 l, Surface s) {
+    float eta = s.extension.ior;
+    vec3 h = -normalize(s.view + eta * l);
+    float outer = dot(h, s.view), inner = -dot(h, l), across = outer - eta * inner;
+    float facets = 4.0 * outer * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha);
+    float density = facets * inner / max(across * across, 1e-12);
+    vec3 passed = s.through;
+    if (!has_multiple_scattering) passed = passed_by(s, h) * unmasked(l, s);
+    return outer > 0.0 && inner > 0.0 ? passed * density : vec3(0.0);
+}
+
+// `light` of a direction above the face, or what roughness spreads of light from below, times the cosine.
 vec3 above_face(vec3 light, vec3 l, Surface s) {
     vec3 below = mirrored_at_face(l);
     vec3 spread = vec3(0.0);
@@ -77,7 +101,8 @@ vec3 above_face(vec3 light, vec3 l, Surface s) {
         vec2 dfg = dfg_at(s.n_dot_v, transmitted_roughness(s));
         float kept = has_multiple_scattering ? dfg.x + dfg.y : 1.0;
         float lobe = (transmitted_lobe(l, s) + transmitted_lobe(below, s)) / kept;
-        spread = is_clear(s) ? vec3(0.0) : s.keep * transmittance_over(s.extension, s.extension.thickness) * s.through * lobe;
+        vec3 through = is_volume(s) ? entering(l, s) : s.through * lobe;
+        spread = is_clear(s) ? vec3(0.0) : s.keep * through;
     }
     vec3 result = dot(l, v_face) > 0.0 ? light : spread;
     return is_inside() ? vec3(0.0) : result;
@@ -86,12 +111,6 @@ vec3 above_face(vec3 light, vec3 l, Surface s) {
 // Light from a direction into the view: the BRDF or the BTDF, times the cosine.
 vec3 reflected(vec3 l, Surface s) {
     return above_face(scattered_above(l, s) + scattered_above(mirrored_at_face(l), s), l, s);
-}
-
-// As that of path_plain.glsl. What lets light pass has it from below the face, too.
-vec3 reflected_unmirrored(vec3 l, Surface s) {
-    vec3 light = scattered_above(l, s);
-    return is_inside() || s.extension.transmission > 0.0 ? above_face(light, l, s) : light;
 }
 
 // Parts of the directions; the others are those of a cosine.
@@ -147,11 +166,6 @@ float density_below(vec3 l, Surface s) {
 // Roughness of a volume's surface spreads what leaves it.
 bool leaves_spread(Surface s) { return is_inside() && !is_clear(s); }
 
-// What stays in a volume at a facet: Fresnel's reflectance is the same from both sides, at the angle outside.
-float kept_part(float outer_cosine, Surface s) {
-    return luminance(F_schlick90(outer_cosine, s.extension.f0, vec3(s.extension.f90)));
-}
-
 // Of directions in which paths leave a volume: facets as the view sees them (Heitz 2018), refraction (Walter et al. 2007,
 // equation 17), and what Fresnel's reflectance leaves, as left_or_kept() of path_scatter_extended.frag chooses it. A path takes
 // all of the light of such a direction with it but for what unmasked() says, so that this is the BTDF times the cosine, too.
@@ -182,3 +196,21 @@ vec3 bsdf(vec3 l, Surface s) {
     return leaves_spread(s) ? vec3(leaving(l, s) * unmasked(l, s)) : outside;
 }
 float bsdf_density(vec3 l, Surface s) { return density_of(l, s, lobes_of(s)); }
+
+// Of light that a lamp sends from within a rough volume: the directions in which paths stay there, as those of entering().
+float staying(vec3 l, Surface s) {
+    float eta = s.extension.ior;
+    vec3 h = normalize(l + s.view);
+    float cosine = dot(h, s.view), outer2 = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    float kept = outer2 > 0.0 ? kept_part(sqrt(max(outer2, 0.0)), s) : 1.0;
+    return kept * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha) / (eta * eta);
+}
+
+// As that of path_plain.glsl. What lets light pass has it from below the face, too.
+vec3 reflected_unmirrored(vec3 l, Surface s) {
+    vec3 light = scattered_above(l, s);
+    vec3 outside = s.extension.transmission > 0.0 ? above_face(light, l, s) : light;
+    float found = dot(l, v_face) > 0.0 ? staying(l, s) : leaving(l, s);
+    vec3 inside = leaves_spread(s) ? vec3(found * unmasked(l, s)) : vec3(0.0);
+    return is_inside() ? inside : outside;
+}

@@ -46,12 +46,6 @@ vec3 left_or_kept(Surface s, vec3 h, float u) {
     return leaves ? (eta * cosine - outer) * h - eta * s.view : mirrored_by(h, s.view);
 }
 
-// What one facet lets into a volume: of what s.through says of all together, by Fresnel's reflectance at it.
-vec3 passed_by(Surface s, vec3 h) {
-    float of_all = 1.0 - luminance(s.energy.single), of_facet = 1.0 - kept_part(max(dot(h, s.view), 0.0), s);
-    return is_clear(s) ? s.through : s.through * of_facet / max(of_all, 1e-6);
-}
-
 void main() {
     Surface s = path_surface();
     Lobes lobes = lobes_of(s);

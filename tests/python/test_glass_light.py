@@ -203,3 +203,90 @@ def test_glass_on_a_white_page_is_bright(mode, thickness):
     # Two faces leave 0.92 of what stands for white, 4, of which the tone curve makes 243. 20: the shadow on the ground behind,
     # and noise.
     assert np.median(codes) > 223
+
+
+def frosted(roughness=0.4, **changes):
+    return glass(roughness=roughness, **changes)
+
+
+#: As bright at the origin from 30 above, all of them: lamps without an area, and one with an area.
+LAMPS_ABOVE = {"directional": {"direction": (0, -1, 0), "intensity": 1},
+               "point": {"position": (0, 30, 0), "intensity": 900, "radius": 0},
+               "large point": {"position": (0, 30, 0), "intensity": 900, "radius": 0.5},
+               "spot": {"position": (0, 30, 0), "direction": (0, -1, 0), "intensity": 900},
+               "disc": {"position": (0, 30, 0), "direction": (0, -1, 0), "radius": 3, "intensity": 100 / math.pi}}
+
+
+def below(caster, lamp, samples=1024):
+    """What a caster leaves of the light of one of the lamps on a dark floor, which sends next to nothing back."""
+    floor = sheet(0, 50)
+    floor.material = matt(0.02)
+    values = {"type": lamp.split()[-1], **LAMPS_ABOVE[lamp]}
+    bare, through = (picture([floor, *more], BELOW, values, samples=samples, path={"bounces": 1}) for more in ([], [caster]))
+    return (through / bare).mean()
+
+
+@pytest.mark.parametrize("lamp", LAMPS_ABOVE)
+def test_a_frosted_pane_passes_the_light_of_a_lamp_once(lamp):
+    pane = sheet(2, 90)
+    pane.material = frosted(base_color=(0.5,) * 3)
+    # Light from everywhere falls on an endless pane: its tint is left, less what it reflects. 3 %: what facets turn back, and
+    # three deviations of the noise of 262144 paths, of which one of 80 looks into the lobe.
+    assert below(pane, lamp) == pytest.approx(0.5 * ENTERING, rel=0.03)
+
+
+@pytest.mark.parametrize("roughness", [0.02, 0.1])
+def test_what_is_nearly_clear_passes_the_light_of_lamps_straight(roughness):
+    pane = sheet(2, 5)
+    pane.material = frosted(roughness, base_color=(0.5,) * 3)
+    slab = box((-5, 2, -5), (5, 3, 5))
+    slab.material = absorbing(roughness=roughness)
+    for caster, left in ((pane, 0.5 * ENTERING), (slab, ENTERING**2 * ABSORBING)):
+        floor = sheet(0, 50)
+        floor.material = matt(0.02)
+        bare, through = (picture([floor, *more], BELOW, SUN, samples=256, path={"bounces": 4}) for more in ([], [caster]))
+        # 1 %: what the floor and the glass reflect to each other. Paths to the glass find nothing of the lamp.
+        np.testing.assert_allclose(through / bare, left, rtol=0.01)
+
+
+def test_a_roughness_texture_tells_where_lamps_shine_straight_through():
+    pane = sheet(2, 5)
+    for value, left in ((0, ENTERING), (255, 0)):
+        pane.material = frosted(1, roughness_texture=np.full((4, 4), value, np.uint8))
+        np.testing.assert_allclose(part_of_light(pane), left, rtol=0.003)
+
+
+@pytest.mark.parametrize("lamp", ["directional", "point", "spot"])
+def test_a_frosted_volume_passes_the_light_of_lamps_as_of_areas(lamp):
+    slab = box((-60, 2, -60), (60, 3, 60))
+    slab.material = frosted(thickness=1)
+    # 4 %: the noise of both, 1 % each.
+    assert below(slab, lamp) == pytest.approx(below(slab, "disc"), rel=0.04)
+
+
+@pytest.mark.parametrize(("roughness", "thickness"), [(0.3, 0), (0.7, 0), (0.1, 1), (0.3, 1)])
+def test_a_frosted_globe_sends_out_the_light_of_the_lamp_in_it(roughness, thickness):
+    globe = ball(0.2)
+    globe.material = frosted(roughness, thickness=thickness)
+    floor = sheet(0, 50)
+    floor.material = matt(0.1)
+    lamp = {"type": "point", "position": (0, 2, 0), "intensity": 10, "radius": 0}
+    camera = {"position": (3.4, 1, 0.13), "target": (0.1, 0, 0.13)}
+    # What a rough face reflects leaves by another one: nothing is lost. What is nearly clear loses it. 5 %: the size of the globe,
+    # 1 %, tables of albedos, 1 %, and noise; a path of a hundred meets the globe.
+    bare, within = (picture([floor, *more], camera, lamp, samples=2048, path={"bounces": 8}) for more in ([], [globe]))
+    np.testing.assert_allclose(within / bare, 1 if roughness > 0.15 else ENTERING, rtol=0.05)
+
+
+@pytest.mark.parametrize("roughness", [0.12, 0.2, 0.5])
+def test_a_frosted_pane_before_a_lamp_is_as_bright_as_in_the_raster(roughness):
+    pane = sheet(0, 5)
+    pane.material = frosted(roughness)
+    camera = {"position": (0, 10, 1), "target": (0, 0, 0)}
+    lamp = {"type": "directional", "direction": (0.1, 1, -0.2), "intensity": 1, "angular_radius_deg": 0}
+    # Paths alone know the light that facets scatter to each other.
+    raster, path = (picture([pane], camera, lamp, path={"enabled": enabled}, shading={"multiple_scattering": False})
+                    for enabled in (False, True))
+    assert (raster > 0.01).all()
+    # 5 %: tables of albedos, and the G-buffer, which rounds roughness to 8 bits.
+    np.testing.assert_allclose(path, raster, rtol=0.05)

@@ -147,7 +147,9 @@ void CatcherLight::add_lamps(const PathBatch& batch, uint32_t depth, std::vector
             to.arrives += lamps[i].all;
         }
     }
-    const std::vector<Vec3> left = lights_->transmittances(rays, lights, *scene_);
+    // No paths go on from here, which would find what rough surfaces spread.
+    const std::vector<float> stopping(rays.size(), RayScene::passes_all);
+    const std::vector<Vec3> left = lights_->transmittances(rays, lights, stopping, *scene_);
     for (size_t i = 0; i < rays.size(); ++i)
         light[batch.state[paths[i]].index].arrives += lamps[paths[i]].all * luminance(left[i]);
 }

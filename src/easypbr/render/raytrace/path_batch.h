@@ -53,6 +53,7 @@ struct PathState {
     std::array<int, 4> volumes{-1, -1, -1, -1};
     Scattering scattered = Scattering::none;
     bool reflected = false;         ///< by any surface: not transmitted alone
+    bool found_lamps = false;       ///< a surface before is lit straight through what is nearly clear
     int8_t channel = all_channels;  ///< the only one that is left once a volume has dispersed the light
 };
 

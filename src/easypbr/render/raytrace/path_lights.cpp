@@ -176,14 +176,15 @@ RaySegment PathLights::towards(const ChosenLight& chosen, const Vec3& from) cons
 }
 
 std::vector<Vec3> PathLights::transmittances(std::span<const RaySegment> rays,
-                                             std::span<const uint32_t> lights, const RayScene& scene) const {
+                                             std::span<const uint32_t> lights,
+                                             std::span<const float> stopping, const RayScene& scene) const {
     std::vector<Vec3> left(rays.size(), Vec3::Ones());
     std::vector<RaySegment> whole;
     std::vector<size_t> places;
     for (size_t i = 0; i < rays.size(); ++i) {
         if (rays[i].distance <= 0) continue;
         if (transmits_ && !emitters_[lights[i]].is_area) {
-            left[i] = scene.transmittance(rays[i].from, rays[i].direction, rays[i].distance);
+            left[i] = scene.transmittance(rays[i].from, rays[i].direction, rays[i].distance, stopping[i]);
         } else {
             whole.push_back(rays[i]);
             places.push_back(i);

@@ -39,8 +39,11 @@ class PathLights {
     /// where it casts no shadows.
     RaySegment towards(const ChosenLight& light, const Vec3& from) const;
     /// What reaches places of the light that comes by such rays, of the lights of these indices.
+    /// `stopping`: of lights without an area, by RayScene::transmittance().
     std::vector<Vec3> transmittances(std::span<const RaySegment> rays, std::span<const uint32_t> lights,
-                                     const RayScene& scene) const;
+                                     std::span<const float> stopping, const RayScene& scene) const;
+    /// Whether a light shines straight through surfaces, as those without an area do.
+    bool shines_straight(uint32_t light) const { return !emitters_[light].is_area; }
     /// Whether there are area lights, which directions meet that are sampled by the BSDF.
     bool has_areas() const { return !areas_.empty(); }
 

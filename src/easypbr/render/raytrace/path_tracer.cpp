@@ -33,10 +33,39 @@ constexpr float narrow_light = 40;
 /// Cosine between a face and a lamp's direction from which on down rays to the lamp start above the face.
 constexpr float terminator = 0.1f;
 constexpr float unlimited = std::numeric_limits<float>::infinity();
+/// Lamps shine straight through faces of less roughness (Passage::roughness): as narrowly as these spread
+/// light, hardly a path from what it falls on would find the lamp.
+constexpr float nearly_clear = 0.15f;
 /// Of directions that are the only ones.
 constexpr float only_direction = 1e30f;
 
 using enum PathSampler::Dimension;
+
+bool is_inside(const PathBatch& batch, size_t path) {
+    return batch.extensions && batch.inside[path] > 0.5f;
+}
+
+/// Of light that passes a path's surface.
+float passing_roughness(const PathBatch& batch, size_t path) {
+    return transmitted_roughness(batch.parameters.at(path).y(), batch.extensions->volume.at(path).y());
+}
+
+/// Whether lamps beyond are not looked for from a path's surface: it is clear, or the way into a volume.
+bool overlooks_lamps(const PathBatch& batch, size_t path, bool passes) {
+    const bool inside = is_inside(batch, path);
+    if (!passes && !inside) return false;
+    return passing_roughness(batch, path) < least_roughness ||
+           (!inside && batch.extensions->volume.at(path).z() > 0);
+}
+
+/// Light that a lamp in this direction sends a path: of one colour where it leaves a volume that disperses.
+Vec3 dispersed_on_entry(const PathBatch& batch, size_t path, const Vec3& direction, const Vec3& light) {
+    if (!batch.passes(path, direction) || is_inside(batch, path)) return light;
+    PathState passed = batch.state[path];
+    passed.throughput = light;
+    disperse(batch.extended_paths[path].channel, passed);
+    return passed.throughput;
+}
 
 bool is_extended_kind(float code) {
     return std::abs(code - code_of(SurfaceKind::extended)) < 0.01f;
@@ -205,19 +234,33 @@ void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight
     if (lights_.empty()) return;
     std::vector<RaySegment> rays;
     std::vector<uint32_t> lights, paths;
+    std::vector<float> stopping;
     rays.reserve(batch.count);
     lights.reserve(batch.count);
+    stopping.reserve(batch.count);
     paths.reserve(batch.count);
     for (size_t i = 0; i < batch.count; ++i) {
         if (!(lamps[i].all > 0)) continue;
+        const bool inside = is_inside(batch, i), passes = batch.passes(i, lamps[i].way);
+        // From what lies before such a face its light has been found straight through it.
+        if ((inside || passes) && batch.state[i].found_lamps && lights_.shines_straight(lamps[i].index) &&
+            passing_roughness(batch, i) < nearly_clear)
+            continue;
         RaySegment ray = lights_.towards(lamps[i], batch.position.at(i));
         ray.from = start_to_lamp(batch, i, ray.direction);
+        // From the way into a volume lamps are found that are within: others where paths leave it.
+        stopping.push_back(passes && overlooks_lamps(batch, i, true) ? least_roughness : nearly_clear);
         rays.push_back(ray);
         lights.push_back(lamps[i].index);
         paths.push_back(uint32_t(i));
     }
-    const std::vector<Vec3> left = lights_.transmittances(rays, lights, *scene_);
-    for (size_t i = 0; i < rays.size(); ++i) light[paths[i]] += lamps[paths[i]].light.cwiseProduct(left[i]);
+    // What is rougher spreads the light over directions in which paths go on to it.
+    const std::vector<Vec3> left = lights_.transmittances(rays, lights, stopping, *scene_);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const size_t path = paths[i];
+        const Vec3 found = lamps[path].light.cwiseProduct(left[i]);
+        light[path] += dispersed_on_entry(batch, path, lamps[path].way, found);
+    }
 }
 
 bool PathTracer::sees_sky_in_ground(Scattering scattered) const {
@@ -266,7 +309,7 @@ void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::v
         add(state.index, state.throughput.cwiseProduct(of_it), state.scattered, radiance);
     };
     for (size_t i = 0; i < batch.count; ++i) {
-        if (batch.extensions && batch.inside[i] > 0.5f) {
+        if (is_inside(batch, i)) {
             // From within a volume all of it has passed the surface.
             PathState passed = batch.state[i];
             disperse(batch.extended_paths[i].channel, passed);
@@ -308,8 +351,9 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
                          PathState& state) const {
     const float most = state.throughput.maxCoeff();
     if (!(most > 0)) return false;
-    const bool inside = batch.extensions && batch.inside[path] > 0.5f, passes = batch.passes(path, direction);
+    const bool inside = is_inside(batch, path), passes = batch.passes(path, direction);
     state.reflected |= !batch.transmits(path, direction);
+    state.found_lamps |= !overlooks_lamps(batch, path, passes);
     if (passes) pass(*scene_, batch, path, state);
     const bool is_sure =
         inside || passes ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;

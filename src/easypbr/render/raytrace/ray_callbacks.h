@@ -88,7 +88,8 @@ inline bool is_filtered(const DrawItem& item) {
 struct RayQuery {
     embree::Context context;
     Transmissive transmissive = Transmissive::passed;
-    StraightLight* light = nullptr;  ///< that passes surfaces, where it is asked for
+    StraightLight* light = nullptr;         ///< that passes surfaces, where it is asked for
+    float stopping = RayScene::passes_all;  ///< roughness of faces that stop that light
     bool meets_gaussians = true;
 
     explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) { embree::begin(context); }
@@ -106,9 +107,12 @@ inline float cosine_between(const RTCRay& ray, const RTCHit& hit) {
 }
 
 /// Takes from light what a surface takes that it passes straight; whether some is left.
-inline bool passes(StraightLight& light, const RayElement& element, const RTCRay& ray, const RTCHit& hit) {
+inline bool passes(StraightLight& light, const RayElement& element, const RTCRay& ray, const RTCHit& hit,
+                   float stopping) {
     const DrawItem& item = *element.item;
-    const Passage passage = passage_at(item, element.of(hit.primID), hit.u, hit.v);
+    Passage passage = passage_at(item, element.of(hit.primID), hit.u, hit.v);
+    // Paths meet elements that are no faces as if these were opaque: no other way leads through them.
+    if (element.faces > 0) passage.stop_from(stopping);
     const float cosine = cosine_between(ray, hit);
     if (passage.thickness > 0 && passage.coverage > 0) {
         const float thickness = passage.thickness / element.unit;
@@ -128,7 +132,7 @@ inline void filter(const RTCFilterFunctionNArguments* args) {
     const auto& query = *reinterpret_cast<const RayQuery*>(args->context);
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
     if (query.light) {
-        if (passes(*query.light, element, ray, hit)) args->valid[0] = 0;
+        if (passes(*query.light, element, ray, hit, query.stopping)) args->valid[0] = 0;
         return;
     }
     const int index = element.of(hit.primID);

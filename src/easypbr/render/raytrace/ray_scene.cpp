@@ -464,13 +464,14 @@ std::vector<uint8_t> RayScene::blocked(std::span<const RaySegment> rays, Neighbo
     return found;
 }
 
-Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float distance) const {
+Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float distance, float stopping) const {
     if (!scene_) return Vec3::Ones();
     RTCRay ray;
     put_ray(from, direction, distance, ray);
     StraightLight light;
     RayQuery query(Transmissive::passed);
     query.light = &light;
+    query.stopping = stopping;
     embree::occlude(scene_->tree.get(), query.context, ray);
     return ray.tfar < 0 ? Vec3(Vec3::Zero()) : light.absorbed(distance, float(unit_));
 }

@@ -192,8 +192,11 @@ class RayScene {
     /// The same of many rays, 1 where one is blocked. Nothing blocks those of no length or less.
     std::vector<uint8_t> blocked(std::span<const RaySegment> rays, Neighbours neighbours,
                                  Transmissive transmissive = Transmissive::passed) const;
-    /// What casters nearer than `distance` leave of light that passes them straight.
-    Vec3 transmittance(const Vec3& from, const Vec3& direction, float distance) const;
+    /// What casters nearer than `distance` leave of light that passes them straight. Faces stop it that are
+    /// as rough as `stopping` or more (Passage::roughness).
+    Vec3 transmittance(const Vec3& from, const Vec3& direction, float distance,
+                       float stopping = passes_all) const;
+    static constexpr float passes_all = 2;
 
   private:
     struct Scene;

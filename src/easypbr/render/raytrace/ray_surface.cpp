@@ -118,6 +118,7 @@ Passage passage_at(const DrawItem& item, int element, float u, float v) {
     if (item.kind != SurfaceKind::lit || !m.transmits()) return passage;
     Vec3 color = m.base_color.cwiseProduct(vertex_color(item, element, u, v).head<3>());
     float through = m.transmission, metallic = m.metallic;
+    passage.roughness = transmitted_roughness(m.roughness, m.ior);
     passage.thickness = m.thickness * float(item.scale());
     passage.f90 = m.specular;
     Vec3 tinted = m.specular_color * m.dielectric_f0(Material::default_f0);
@@ -130,6 +131,7 @@ Passage passage_at(const DrawItem& item, int element, float u, float v) {
         through *= channel(m.transmission_texture);
         metallic *= channel(m.metallic_texture);
         passage.thickness *= channel(m.thickness_texture);
+        passage.roughness *= channel(m.roughness_texture);
         passage.f90 *= channel(m.specular_texture);
         if (m.specular_color_texture)
             tinted = tinted.cwiseProduct(Texel(m.specular_color_texture, uv).color());

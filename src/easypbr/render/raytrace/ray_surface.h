@@ -1,12 +1,22 @@
 // What a surface is made of where a ray meets it.
 #pragma once
 
+#include <algorithm>
+
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 
 struct RayHit;
+
+/// Light goes through faces of less roughness as it comes: is_clear() of shaders/path_extended.glsl.
+inline constexpr float least_roughness = 0.045f;
+/// What roughness does to light that passes a face of this index of refraction: facets turn nothing without
+/// it.
+inline float transmitted_roughness(float roughness, float index) {
+    return roughness * std::clamp(2 * index - 2, 0.0f, 1.0f);
+}
 
 /// Part of an element that there is, whatever it is made of: 1 for opaque ones, 0 in the holes of masked
 /// ones, and the opacity of blended ones. Of faces at barycentric coordinates.
@@ -18,6 +28,7 @@ struct Passage {
     float f90 = 0;        ///< reflectance at grazing angles
     Vec3 tint{0, 0, 0};   ///< of its colours, once for a thin surface and once for both faces of a volume
     float thickness = 0;  ///< of the volume below it, world units; 0: thin
+    float roughness = 0;  ///< transmitted_roughness()
 
     /// The tint of one face.
     Vec3 color() const { return thickness > 0 ? Vec3(tint.cwiseSqrt()) : tint; }
@@ -29,6 +40,12 @@ struct Passage {
     /// What one face leaves of light at this cosine to its normal but for what a volume absorbs.
     Vec3 left(float cosine) const {
         return Vec3::Constant(1 - coverage) + coverage * entering(cosine) * color();
+    }
+    /// Nothing passes of a roughness or more.
+    void stop_from(float stopping) {
+        if (roughness < stopping) return;
+        tint.setZero();
+        thickness = 0;
     }
 };
 Passage passage_at(const DrawItem& item, int element, float u, float v);
