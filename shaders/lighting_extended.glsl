@@ -86,8 +86,9 @@ void prepare_extended(inout Surface s, vec3 albedo, float metallic) {
     }
 }
 
-// Facets turn nothing without refraction.
-float transmitted_roughness(Surface s) { return max(s.roughness * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0), 0.045); }
+// Facets turn nothing without refraction, and into what is less dense as much as out of it.
+float turning(float ior) { return clamp(2.0 * max(ior, 1.0 / ior) - 2.0, 0.0, 1.0); }
+float transmitted_roughness(Surface s) { return max(s.roughness * turning(s.extension.ior), 0.045); }
 
 // A light on the other side: the specular lobe around the way straight through (KHR_materials_transmission).
 float transmitted_lobe(vec3 l, Surface s) {

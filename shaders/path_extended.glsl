@@ -12,7 +12,7 @@ in vec4 v_coat;        // coat_normal, clearcoat
 in vec4 v_sheen;       // sheen_color, sheen_roughness
 in vec4 v_film;        // iridescence, film_ior, film_thickness, coat_roughness
 in vec4 v_tangent;     // tangent, anisotropy
-in vec3 v_volume;      // transmission, ior, thickness
+in vec3 v_volume;      // transmission, ior over that of the medium around, thickness
 in vec3 v_absorption;
 
 Extension path_extension() {
@@ -51,7 +51,7 @@ bool is_inside() { return v_inside > 0.5; }
 bool is_volume(Surface s) { return s.extension.thickness > 0.0; }
 
 // Light goes through as it comes.
-bool is_clear(Surface s) { return v_parameters.y * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0) < 0.045; }
+bool is_clear(Surface s) { return v_parameters.y * turning(s.extension.ior) < 0.045; }
 
 // What facets leave of the light of a direction in which it passes a surface, or is kept within: what they hide is scattered
 // again, and lost where single scattering is asked for (Walter et al. 2007, equation 34).
@@ -69,10 +69,11 @@ vec3 scattered_above(vec3 l, Surface s) {
     return under_layers(scattered_by_base(l, h, n_dot_l, s), l, h, n_dot_l, keep, s);
 }
 
-// What stays in a volume at a facet: Fresnel's reflectance is the same from both sides, at the angle outside.
-float kept_part(float outer_cosine, Surface s) {
-    return luminance(F_schlick90(outer_cosine, s.extension.f0, vec3(s.extension.f90)));
+// What stays in a volume at a facet: Fresnel's reflectance is the same from both sides, at the angle in what is less dense.
+float kept_part(float cosine, Surface s) {
+    return luminance(F_schlick90(cosine, s.extension.f0, vec3(s.extension.f90)));
 }
+float kept_between(float inner, float outer, Surface s) { return kept_part(s.extension.ior < 1.0 ? inner : outer, s); }
 
 // What one facet lets into a volume: of what s.through says of all together, by Fresnel's reflectance at it.
 vec3 passed_by(Surface s, vec3 h) {
@@ -84,7 +85,8 @@ vec3 passed_by(Surface s, vec3 h) {
 // 17), times what they take with them, over the square of the index: all of the light leaves that the lamp sends to the face.
 vec3 entering(vec3 l, Surface s) {
     float eta = s.extension.ior;
-    vec3 h = -normalize(s.view + eta * l);
+    vec3 h = normalize(s.view + eta * l);
+    h = eta < 1.0 ? h : -h;
     float outer = dot(h, s.view), inner = -dot(h, l), across = outer - eta * inner;
     float facets = 4.0 * outer * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha);
     float density = facets * inner / max(across * across, 1e-12);
@@ -172,9 +174,10 @@ bool leaves_spread(Surface s) { return is_inside() && !is_clear(s); }
 float leaving(vec3 l, Surface s) {
     float eta = s.extension.ior;
     vec3 h = normalize(l + eta * s.view);
+    h = eta < 1.0 ? -h : h;
     float inner = dot(h, s.view), outer = -dot(h, l), across = eta * inner - outer;
     float facets = 4.0 * inner * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha);
-    float density = facets * outer / max(across * across, 1e-12) * (1.0 - kept_part(outer, s));
+    float density = facets * outer / max(across * across, 1e-12) * (1.0 - kept_between(inner, outer, s));
     return inner > 0.0 && outer > 0.0 && dot(l, v_face) < 0.0 ? density : 0.0;
 }
 
@@ -202,7 +205,7 @@ float staying(vec3 l, Surface s) {
     float eta = s.extension.ior;
     vec3 h = normalize(l + s.view);
     float cosine = dot(h, s.view), outer2 = 1.0 - eta * eta * (1.0 - cosine * cosine);
-    float kept = outer2 > 0.0 ? kept_part(sqrt(max(outer2, 0.0)), s) : 1.0;
+    float kept = outer2 > 0.0 ? kept_between(cosine, sqrt(max(outer2, 0.0)), s) : 1.0;
     return kept * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha) / (eta * eta);
 }
 

@@ -42,7 +42,7 @@ vec3 on_side(vec3 l, float side) { return side * dot(l, v_face) > 0.0 ? l : mirr
 vec3 left_or_kept(Surface s, vec3 h, float u) {
     float eta = s.extension.ior, cosine = dot(h, s.view);
     float sine2 = eta * eta * (1.0 - cosine * cosine), outer = sqrt(max(1.0 - sine2, 0.0));
-    bool leaves = sine2 < 1.0 && u >= kept_part(outer, s);
+    bool leaves = sine2 < 1.0 && u >= kept_between(cosine, outer, s);
     return leaves ? (eta * cosine - outer) * h - eta * s.view : mirrored_by(h, s.view);
 }
 

@@ -164,10 +164,12 @@ struct PathBatch {
     /// through a volume.
     bool transmits(size_t path, const Vec3& direction) const {
         if (passes(path, direction)) return true;
-        if (!extensions || inside[path] < 0.5f) return false;
+        if (!extensions) return false;
+        const float relative = extensions->volume.at(path).y(),
+                    index = inside[path] < 0.5f ? 1 / relative : relative;  // of the two sides
+        if (inside[path] < 0.5f && index <= 1) return false;
         const Vec3 towards = view.at(path);
-        const float cosine = (towards + direction).normalized().dot(towards),
-                    index = extensions->volume.at(path).y();
+        const float cosine = (towards + direction).normalized().dot(towards);
         return index * index * (1 - cosine * cosine) >= 1;
     }
     /// PathSampler::pair() of all paths.

@@ -67,6 +67,21 @@ Vec3 dispersed_on_entry(const PathBatch& batch, size_t path, const Vec3& directi
     return passed.throughput;
 }
 
+/// What the surface between two media reflects at normal incidence and at grazing angles, for Schlick's
+/// reflectance.
+struct InterfaceReflectance {
+    float normal, grazing;
+};
+
+/// `relative`: the ratio of their indices of refraction. Schlick's reflectance is F0 + (F90 - F0) / 21 over
+/// all directions. Fresnel's is that of Egan and Hilgeman (1973), which F90 agrees with: 1 from a ratio
+/// of 1.4 on, and 0 where there is no surface at all.
+InterfaceReflectance reflectance_between(float relative) {
+    const float n = std::max(relative, 1 / relative), root = (n - 1) / (n + 1), normal = root * root;
+    const float mean = (n - 1) / (4.08567f + 1.00071f * n);
+    return {normal, std::clamp(normal + 21 * (mean - normal), 0.0f, 1.0f)};
+}
+
 bool is_extended_kind(float code) {
     return std::abs(code - code_of(SurfaceKind::extended)) < 0.01f;
 }
@@ -341,6 +356,41 @@ void PathTracer::choose_color(PathBatch& batch, size_t path, uint32_t depth) con
     batch.extensions->volume.set(path, volume);
 }
 
+void PathTracer::surround(PathBatch& batch, size_t path) const {
+    const int surface = batch.extended_paths[path].surface;
+    const Material& material = scene_->item_of(surface).material;
+    Vec3 volume = batch.extensions->volume.at(path);
+    const float own = volume.y(), relative = relative_index(*scene_, batch.state[path], surface, own);
+    if (relative == own || !(material.ior > 0) || !material.transmits()) return;
+    volume.y() = relative;
+    batch.extensions->volume.set(path, volume);
+    Vec4 dielectric = batch.extensions->dielectric.at(path);
+    InterfaceReflectance between = reflectance_between(relative);
+    const float alone = reflectance_between(material.ior).normal;
+    Vec3 f0 = alone > 0 ? Vec3(dielectric.head<3>() * (between.normal / alone))
+                        : Vec3(material.specular_color * (between.normal * dielectric.w()));
+    float f90 = between.grazing * dielectric.w();
+    f0 = f0.cwiseMin(dielectric.w());
+    if (relative < 1 && batch.inside[path] < 0.5f) {
+        // From what is denser: the reflectance at this angle, for all facets.
+        const float cosine = batch.normal.at(path).dot(batch.view.at(path)),
+                    sine2 = (1 - cosine * cosine) / (relative * relative);
+        const float grazing = sine2 < 1 ? std::pow(1 - std::sqrt(1 - sine2), 5.0f) : 1.0f;
+        f0 = sine2 < 1 ? Vec3(f0.array() + (f90 - f0.array()) * grazing) : Vec3(Vec3::Ones());
+        f90 = f0.maxCoeff();
+    }
+    dielectric << f0, f90;
+    batch.extensions->dielectric.set(path, dielectric);
+}
+
+void PathTracer::meet_volume(PathBatch& batch, size_t path, const Hit& hit, uint32_t depth) const {
+    const bool is_volume = batch.extensions->volume.at(path).z() > 0,
+               is_within = volume_of(*scene_, hit.state, hit.hit.surface) < hit.state.volumes.size();
+    batch.inside[path] = is_volume && is_within ? 1.0f : 0.0f;
+    choose_color(batch, path, depth);
+    if (is_volume) surround(batch, path);
+}
+
 void PathTracer::absorb(float distance, PathState& state) const {
     if (state.volumes[0] < 0) return;
     const Vec3 absorption = absorption_[size_t(state.volumes[0])];
@@ -351,12 +401,13 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
                          PathState& state) const {
     const float most = state.throughput.maxCoeff();
     if (!(most > 0)) return false;
-    const bool inside = is_inside(batch, path), passes = batch.passes(path, direction);
-    state.reflected |= !batch.transmits(path, direction);
+    const bool inside = is_inside(batch, path), passes = batch.passes(path, direction),
+               transmits = batch.transmits(path, direction);
+    state.reflected |= !transmits;
     state.found_lamps |= !overlooks_lamps(batch, path, passes);
     if (passes) pass(*scene_, batch, path, state);
     const bool is_sure =
-        inside || passes ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
+        inside || transmits ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
     if (is_sure) return true;
     const float chance = std::min(most, 0.95f);
     state.throughput /= chance;
@@ -491,11 +542,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
         if (!extended) continue;
         next.extended.extensions->copy(at, *surfaces.extensions, i);
         next.extended.extended_paths[at] = {hit.hit.surface, all_channels, emission};
-        choose_color(next.extended, at, depth);
-        const bool is_volume = surfaces.extensions->volume.at(i).z() > 0;
-        const bool inside =
-            is_volume && volume_of(*scene_, hit.state, hit.hit.surface) < hit.state.volumes.size();
-        next.extended.inside[at] = inside ? 1.0f : 0.0f;
+        meet_volume(next.extended, at, hit, depth);
     }
     hits.clear();
     return next;

@@ -88,6 +88,10 @@ class PathTracer {
                  PathState& state) const;
     /// Of a path at a surface with extensions: the channel whose index of refraction it meets there.
     void choose_color(PathBatch& batch, size_t path, uint32_t depth) const;
+    /// The same at a volume's surface: what it is to the medium around it.
+    void surround(PathBatch& batch, size_t path) const;
+    /// Sets where a path with extensions is, and what its volume is to it.
+    void meet_volume(PathBatch& batch, size_t path, const Hit& hit, uint32_t depth) const;
     /// What a surface adds to a path that has met it: what it emits, or the colour that it has in the
     /// picture, as a linear curve would show it.
     Vec3 shown(const HitSurfaces& surfaces, size_t i, const PathState& state) const;

@@ -45,14 +45,28 @@ inline void pass(const RayScene& scene, const PathBatch& batch, size_t path, Pat
     if (batch.extensions->volume.at(path).z() > 0) cross_volume(scene, at.surface, state);
 }
 
+/// The index of refraction of a volume, by a surface of it; 1 of none.
+inline float index_of(const RayScene& scene, int volume, int8_t channel) {
+    if (volume < 0) return 1;
+    constexpr int8_t green = 1;
+    return scene.item_of(volume).material.ior_of_channel(channel == all_channels ? green : channel);
+}
+
 /// Of the index of refraction of the medium that a path is in. A path's throughput is that of radiance over
 /// this number, which refraction leaves as it is.
 inline float squared_index(const RayScene& scene, const PathState& state) {
-    if (state.volumes[0] < 0) return 1;
-    constexpr int8_t green = 1;
-    const int8_t channel = state.channel == all_channels ? green : state.channel;
-    const float index = scene.item_of(state.volumes[0]).material.ior_of_channel(channel);
+    const float index = index_of(scene, state.volumes[0], state.channel);
     return index * index;
+}
+
+/// The index of a surface's volume over that of the medium around it, where a path meets the surface. Where
+/// volumes overlap, the one that was entered last fills the place: the borders of others are none.
+/// `index`: of the surface's volume.
+inline float relative_index(const RayScene& scene, const PathState& state, int surface, float index) {
+    const auto& volumes = state.volumes;
+    const size_t own = volume_of(scene, state, surface);
+    if (own == volumes.size()) return index / index_of(scene, volumes[0], state.channel);
+    return own == 0 ? index / index_of(scene, volumes[1], state.channel) : 1.0f;
 }
 
 /// The same of the medium that a direction from a path's surface leads into.

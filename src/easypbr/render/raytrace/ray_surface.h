@@ -12,10 +12,11 @@ struct RayHit;
 
 /// Light goes through faces of less roughness as it comes: is_clear() of shaders/path_extended.glsl.
 inline constexpr float least_roughness = 0.045f;
-/// What roughness does to light that passes a face of this index of refraction: facets turn nothing without
-/// it.
-inline float transmitted_roughness(float roughness, float index) {
-    return roughness * std::clamp(2 * index - 2, 0.0f, 1.0f);
+/// What roughness does to light that passes a face between media of this ratio of their indices of
+/// refraction, whichever is denser: facets turn nothing without it. 0 stands for no refraction.
+inline float transmitted_roughness(float roughness, float relative) {
+    if (!(relative > 0)) return 0;
+    return roughness * std::clamp(2 * std::max(relative, 1 / relative) - 2, 0.0f, 1.0f);
 }
 
 /// Part of an element that there is, whatever it is made of: 1 for opaque ones, 0 in the holes of masked
