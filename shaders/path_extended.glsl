@@ -13,7 +13,7 @@ in vec4 v_sheen;       // sheen_color, sheen_roughness
 in vec4 v_film;        // iridescence, film_ior, film_thickness, coat_roughness
 in vec4 v_tangent;     // tangent, anisotropy
 in vec3 v_volume;      // transmission, ior over that of the medium around, thickness
-in vec3 v_absorption;
+in vec3 v_absorption;  // of a surface without a volume: over its thickness
 
 Extension path_extension() {
     Extension e;
@@ -44,6 +44,7 @@ Surface path_surface() {
     Surface s = bare_surface();
     s.extension = path_extension();
     prepare_extended(s, v_albedo, v_parameters.x);
+    if (has_transmission) s.through = s.extension.thickness > 0.0 ? s.through : s.through * exp(-v_absorption);
     return s;
 }
 

@@ -29,13 +29,14 @@ TEST(Facing, Inward) {
 }
 
 TEST(Facing, Open) {
-    EXPECT_FALSE(is_closed_outward(points(corners), faces(outward.topRows(3))));
+    EXPECT_EQ(winding_of(points(corners), faces(outward.topRows(3))), Winding::open);
+    EXPECT_EQ(winding_of(points(corners), faces(outward.topRows(1))), Winding::open);
 }
 
 TEST(Facing, OneFaceFlipped) {
     Eigen::MatrixXi F = outward;
     F.row(2) = F.row(2).reverse().eval();
-    EXPECT_FALSE(is_closed_outward(points(corners), faces(F)));
+    EXPECT_EQ(winding_of(points(corners), faces(F)), Winding::unknown) << "no edge has one face";
 }
 
 // A second, larger component that looks inward: the total volume is negative, the first alone is not.

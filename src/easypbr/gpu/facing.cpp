@@ -39,21 +39,37 @@ uint64_t directed_edge(uint64_t a, uint64_t b) {
     return (edge ^ sign) - sign;
 }
 
-/// Every edge is run through as often in one direction as in the other. The sum of random numbers, negated
-/// for one direction, is zero then, and otherwise with a probability of 2^-64 only. `key` names a vertex.
+/// What the edges of all faces tell.
+struct Edges {
+    bool cancel = true;    ///< each is run through as often in one direction as in the other
+    bool are_even = true;  ///< each has an even number of faces, whichever way they look
+};
+
+/// The sum of random numbers, negated for one direction, is zero where edges cancel, and otherwise with a
+/// probability of 2^-64 only. So are the bits that differ between them where the number of faces is even.
+/// `key` names a vertex.
 template <class Key>
-bool has_no_boundary(const Array3i& F, const Key& key) {
-    std::atomic<uint64_t> total{0};
+Edges edges_of(const Array3i& F, const Key& key) {
+    std::atomic<uint64_t> total{0}, odd{0};
     parallel_chunks(size_t(F.rows()), face_grain, [&](size_t begin, size_t end) {
-        uint64_t sum = 0;
+        uint64_t sum = 0, differing = 0;
+        const auto add = [&](uint64_t a, uint64_t b) {
+            const uint64_t edge = directed_edge(a, b);
+            sum += edge;
+            // An edge without length joins no faces.
+            if (a != b) differing ^= a < b ? edge : uint64_t(0) - edge;
+        };
         for (size_t i = begin; i < end; ++i) {
             const int32_t* f = F.data() + 3 * i;
             const uint64_t a = key(f[0]), b = key(f[1]), c = key(f[2]);
-            sum += directed_edge(a, b) + directed_edge(b, c) + directed_edge(c, a);
+            add(a, b);
+            add(b, c);
+            add(c, a);
         }
         total += sum;
+        odd ^= differing;
     });
-    return total == 0;
+    return {total == 0, odd == 0};
 }
 
 /// The same for all vertices at one place.
@@ -158,13 +174,15 @@ std::vector<Volume> volumes_in(const Array3f& V, const Array3i& F, const std::ve
 Winding winding_of(const Array3f& V, const Array3i& F) {
     if (F.rows() == 0) return Winding::unknown;
     std::vector<int32_t> parent;
-    if (has_no_boundary(F, [](int32_t v) { return uint64_t(v); })) {
+    if (edges_of(F, [](int32_t v) { return uint64_t(v); }).cancel) {
         parent.resize(size_t(V.rows()));
         std::iota(parent.begin(), parent.end(), 0);
-    } else if (has_no_boundary(F, [&](int32_t v) { return place_key(V, v); }))
-        parent = first_at_place(V);  // Creases and seams have several vertices at one place.
-    else
-        return Winding::unknown;
+    } else {
+        // Creases and seams have several vertices at one place.
+        const Edges edges = edges_of(F, [&](int32_t v) { return place_key(V, v); });
+        if (!edges.cancel) return edges.are_even ? Winding::unknown : Winding::open;
+        parent = first_at_place(V);
+    }
     JoinedSets components(std::move(parent));
     parallel_chunks(size_t(F.rows()), face_grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {

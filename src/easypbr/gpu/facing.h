@@ -9,7 +9,8 @@ namespace easypbr::gpu {
 
 /// Which way the faces of a mesh look.
 enum class Winding {
-    unknown,  ///< it is open, or components of it look different ways
+    unknown,  ///< not found out, or faces of it look different ways
+    open,     ///< it has a boundary: some edge has an odd number of faces
     outward,  ///< every connected component is closed and its faces look outward
     inward    ///< the same the other way round
 };

@@ -384,11 +384,20 @@ void PathTracer::surround(PathBatch& batch, size_t path) const {
 }
 
 void PathTracer::meet_volume(PathBatch& batch, size_t path, const Hit& hit, uint32_t depth) const {
-    const bool is_volume = batch.extensions->volume.at(path).z() > 0,
-               is_within = volume_of(*scene_, hit.state, hit.hit.surface) < hit.state.volumes.size();
-    batch.inside[path] = is_volume && is_within ? 1.0f : 0.0f;
+    PathExtensions& extensions = *batch.extensions;
+    Vec3 volume = extensions.volume.at(path);
+    const int surface = hit.hit.surface;
+    const bool is_within = volume_of(*scene_, hit.state, surface) < hit.state.volumes.size();
+    if (volume.z() > 0 && !is_within && scene_->is_sheet(hit.hit, hit.direction)) {
+        extensions.absorption.set(path, extensions.absorption.at(path) * volume.z());
+        volume.z() = 0;
+        extensions.volume.set(path, volume);
+    } else if (!(volume.z() > 0)) {
+        extensions.absorption.set(path, Vec3::Zero());
+    }
+    batch.inside[path] = volume.z() > 0 && is_within ? 1.0f : 0.0f;
     choose_color(batch, path, depth);
-    if (is_volume) surround(batch, path);
+    if (volume.z() > 0) surround(batch, path);
 }
 
 void PathTracer::absorb(float distance, PathState& state) const {

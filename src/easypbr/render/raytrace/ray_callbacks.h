@@ -74,7 +74,8 @@ struct RayElement {
     float unit = 1;                              ///< RayScene::unit()
     Mat3 world_from_normals = Mat3::Identity();  ///< of faces: turns normals of the mesh, not to unit length
     float outwards = 1;      ///< -1: the normals of faces look into the volume that they bound
-    bool is_closed = false;  ///< of faces that light passes: their mesh has no holes
+    bool is_closed = false;  ///< of faces that light passes: their mesh has no holes, and is wound one way
+    bool is_open = false;    ///< likewise: their mesh has holes
 
     int of(unsigned triangle) const { return first + int(triangle) / triangles; }
 };
@@ -140,9 +141,10 @@ inline void filter(const RTCFilterFunctionNArguments* args) {
         args->valid[0] = 0;
         return;
     }
-    const float stops = query.transmissive == Transmissive::passed
-                            ? opacity_at(*element.item, index, hit.u, hit.v, cosine_between(ray, hit))
-                            : coverage_at(*element.item, index, hit.u, hit.v);
+    const float stops =
+        query.transmissive == Transmissive::passed
+            ? opacity_at(*element.item, index, hit.u, hit.v, cosine_between(ray, hit))
+            : coverage_at(*element.item, index, hit.u, hit.v);
     if (query.transmissive == Transmissive::layers && stops > 0) return;
     if (stops < 1 && (stops <= 0 || hash_of(ray, number_of(hit.geomID, hit.primID)) >= stops))
         args->valid[0] = 0;

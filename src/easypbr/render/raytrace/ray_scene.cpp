@@ -63,7 +63,8 @@ struct RayScene::Scene final : RayGeometry {
         const auto [found, is_new] = windings.try_emplace(item.object, gpu::Winding::unknown);
         if (is_new) found->second = gpu::winding_of(item.mesh().V, item.mesh().F);
         const bool is_mirrored = item.object->T_world_mesh.linear().determinant() < 0;
-        element.is_closed = found->second != gpu::Winding::unknown;
+        element.is_closed = found->second == gpu::Winding::outward || found->second == gpu::Winding::inward;
+        element.is_open = found->second == gpu::Winding::open;
         element.outwards = (found->second == gpu::Winding::inward) != is_mirrored ? -1.0f : 1.0f;
     }
 
@@ -266,6 +267,24 @@ Vec3 RayScene::to_smooth(const SurfacePlace& on, const Vec3& face) const {
     for (Vec3& normal : *normals)
         if (normal.dot(face) < 0) normal = -normal;
     return to_smooth_surface(triangle(on.surface, on.element), *normals, on.u, on.v);
+}
+
+bool RayScene::is_sheet(const RayHit& hit, const Vec3& direction) const {
+    if (hit.surface < 0 || !scene_->elements[size_t(hit.surface)]->is_open) return false;
+    const auto looks_back = [&](const RayHit& met) {
+        const std::array<Vec3, 3> corners = triangle(met.surface, met.element);
+        return (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(direction) < 0;
+    };
+    const auto* const object = item_of(hit.surface).object;
+    // Beyond so many other surfaces it is the same to the eye.
+    constexpr int most = 32;
+    std::optional<RayHit> met = hit;
+    for (int i = 0; i < most; ++i) {
+        met = first_hit({start_at(*met, -met->normal), direction, endless}, Transmissive::layers, false);
+        if (!met || met->surface < 0) return true;
+        if (item_of(met->surface).object == object) return looks_back(*met) == looks_back(hit);
+    }
+    return true;
 }
 
 std::optional<std::array<Vec3, 3>> RayScene::corner_normals(const SurfacePlace& on) const {

@@ -96,6 +96,11 @@ class RayScene {
     /// The corners of a face, relative to centre(), in unit().
     std::array<Vec3, 3> triangle(int surface, int face) const;
 
+    /// Of a face of a volume that a ray in a unit direction has met: whether it stands for a way of its
+    /// thickness alone. Its mesh has holes, and the ray meets no face of the same object next that looks the
+    /// other way.
+    bool is_sheet(const RayHit& hit, const Vec3& direction) const;
+
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }
     double unit() const { return unit_; }

@@ -6,6 +6,7 @@
 #include "easypbr/gpu/facing.h"
 #include "easypbr/render/frame/own_shader.h"
 #include "easypbr/render/primitives/mesh/mesh_material.h"
+#include "easypbr/render/primitives/mesh/volume_side.h"
 
 namespace easypbr::render {
 namespace {
@@ -92,9 +93,7 @@ void MeshPass::draw_item(const Frame& frame, const DrawItem& item, const MeshBuf
     if (outputs.peel) set_peel_uniforms(program, *outputs.peel, free_unit);
 
     gl::DrawState state = geometry_state(outputs);
-    // The front of a volume is its outside, whatever its winding.
-    const bool turned = item.is_volume() && buffers.winding == gpu::Winding::inward,
-               backs = outputs.peel && outputs.peel->backs;
+    const bool turned = is_turned(frame, item, buffers.winding), backs = outputs.peel && outputs.peel->backs;
     if (is_one_sided(frame, item, buffers))
         state.culling = backs != turned ? gl::Culling::front : gl::Culling::back;
     state.clockwise_fronts = mirrored;

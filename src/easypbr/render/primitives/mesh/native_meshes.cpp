@@ -12,6 +12,7 @@
 #include "easypbr/gpu/facing.h"
 #include "easypbr/gpu/packing.h"
 #include "easypbr/render/primitives/mesh/mesh_material.h"
+#include "easypbr/render/primitives/mesh/volume_side.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::render {
@@ -29,9 +30,8 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
     const bool both_sides = item.two_sided && !item.is_volume() &&
                             (!hides || item.style.flat || known.winding != gpu::Winding::outward ||
                              !gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, known.box));
-    // The front of a volume is its outside, whatever its winding.
-    const bool turned = item.is_volume() && known.winding == gpu::Winding::inward;
-    const bool mirrored = (item.object->T_world_mesh.linear().determinant() < 0) != turned;
+    const bool mirrored =
+        (item.object->T_world_mesh.linear().determinant() < 0) != is_turned(frame, item, known.winding);
     return {mesh.V,
             mesh.F,
             item.part.first_face,
