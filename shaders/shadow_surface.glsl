@@ -6,7 +6,7 @@
 #feature TRANSMISSION_TEXTURE has_transmission_texture
 
 uniform vec3 u_through;  // part of light that goes through what is covered
-uniform float u_root;    // on the colours that vary: light crosses the faces of a volume twice
+uniform float u_root;    // on the colours that vary: light crosses the faces of a closed volume twice
 uniform sampler2D u_transmission_texture;
 uniform mat3 u_transmission_uv;
 uniform vec4 u_transmission_channel;

@@ -399,3 +399,14 @@ def test_a_ball_with_holes_still_refracts():
     seen = pixels([around, shining(-3, 20)], camera, samples=256, path={"bounces": 64})
     # As above: three of thousands of faces are missing.
     assert abs(seen - glass_ball()).mean() < 0.015
+
+
+@pytest.mark.parametrize("up", [False, True])
+def test_the_rasterised_shadow_of_an_open_sheet_has_its_whole_thickness(up):
+    pane = sheet(2, 5, up)
+    pane.material = absorbing(0.5, base_color=(0.5, 1, 0.25))
+    floor = sheet(0, 50)
+    floor.material = matt()
+    lit, tinted = (picture([floor, *more], BELOW, SUN, path={"enabled": False}) for more in ([], [pane]))
+    # 1 %: sums of shadow maps are half floats.
+    np.testing.assert_allclose(tinted / lit, ENTERING * ABSORBING**0.5 * (0.5, 1, 0.25), rtol=0.01)

@@ -24,6 +24,14 @@ class ClosedMeshes {
         return entry.winding;
     }
 
+    /// The winding of a mesh, whatever it takes; no drawing is noted.
+    Winding find(const MeshData& mesh) {
+        Entry& entry = entries_.get(key_of(mesh), [] { return Entry(); });
+        if (!entry.is_known) entry.winding = winding_of(mesh.V, mesh.F);
+        entry.is_known = true;
+        return entry.winding;
+    }
+
     /// Whether a mesh is known to be closed and wound outward; it is not noted.
     bool is_known(const MeshData& mesh) const {
         const Entry* const entry = entries_.find(key_of(mesh));

@@ -143,7 +143,7 @@ inline void filter(const RTCFilterFunctionNArguments* args) {
     }
     const float stops =
         query.transmissive == Transmissive::passed
-            ? opacity_at(*element.item, index, hit.u, hit.v, cosine_between(ray, hit))
+            ? opacity_at(*element.item, index, hit.u, hit.v, cosine_between(ray, hit), element.is_open)
             : coverage_at(*element.item, index, hit.u, hit.v);
     if (query.transmissive == Transmissive::layers && stops > 0) return;
     if (stops < 1 && (stops <= 0 || hash_of(ray, number_of(hit.geomID, hit.primID)) >= stops))

@@ -141,11 +141,11 @@ Passage passage_at(const DrawItem& item, int element, float u, float v) {
     return passage;
 }
 
-float opacity_at(const DrawItem& item, int element, float u, float v, float cosine) {
+float opacity_at(const DrawItem& item, int element, float u, float v, float cosine, bool is_open) {
     const Passage passage = passage_at(item, element, u, v);
-    const Vec3 way = absorption_of(item.material) * (0.5f * passage.thickness);
-    return passage.coverage *
-           (1 - passage.entering(cosine) * (passage.color().array() * (-way).array().exp()).mean());
+    const Vec3 way = absorption_of(item.material) * ((is_open ? 1.0f : 0.5f) * passage.thickness),
+               color = is_open ? passage.tint : passage.color();
+    return passage.coverage * (1 - passage.entering(cosine) * (color.array() * (-way).array().exp()).mean());
 }
 
 RaySurface surface_at(const RayHit& hit, float dielectric_f0, float exposure) {

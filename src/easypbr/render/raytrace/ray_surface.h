@@ -51,9 +51,9 @@ struct Passage {
 };
 Passage passage_at(const DrawItem& item, int element, float u, float v);
 /// Part of a ray that an element stops: 1 for opaque ones, 0 in the holes of masked ones, and for others what
-/// they take from light, each face of a volume by half of its thickness. Of faces at barycentric coordinates,
-/// met at this cosine to their normal; of others by their material.
-float opacity_at(const DrawItem& item, int element, float u, float v, float cosine);
+/// they take from light, each face of a volume by half of its thickness, or of an open mesh by the whole. Of
+/// faces at barycentric coordinates, met at this cosine to their normal; of others by their material.
+float opacity_at(const DrawItem& item, int element, float u, float v, float cosine, bool is_open);
 
 /// glTF's core model.
 struct RaySurface {

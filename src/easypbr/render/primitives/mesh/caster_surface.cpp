@@ -28,22 +28,28 @@ std::vector<std::string> mesh_caster_defines(const DrawItem& item) {
     return defines;
 }
 
-Vec3 light_through(const DrawItem& item) {
+float share_of_face(const DrawItem& item, gpu::Winding winding) {
+    return item.is_volume() && winding != gpu::Winding::open ? 0.5f : 1.0f;
+}
+
+Vec3 light_through(const DrawItem& item, float share) {
     if (item.kind != SurfaceKind::lit) return Vec3::Zero();
     Material m = item.material;
     m.thickness *= float(item.scale());
     const Vec3 through = m.transmittance(AlphaMode::opaque);
-    return m.thickness > 0 ? Vec3(through.cwiseSqrt()) : through;
+    return share < 1 ? Vec3(through.cwiseSqrt()) : through;
 }
 
-ShaderInputs caster_inputs(const DrawItem& item, gpu::TextureCache& textures, bool native) {
+ShaderInputs caster_inputs(const DrawItem& item, gpu::Winding winding, gpu::TextureCache& textures,
+                           bool native) {
     const Material& m = item.material;
+    const float share = share_of_face(item, winding);
     ShaderInputs values;
     values.define(mesh_caster_defines(item));
     values.set("u_opacity", m.opacity);
     values.set("u_alpha_cutoff", m.alpha_cutoff);
-    values.set("u_through", light_through(item));
-    values.set("u_root", item.is_volume() ? 0.5f : 1.0f);
+    values.set("u_through", light_through(item, share));
+    values.set("u_root", share);
     if (!casts_by_texture(item)) return values;
     const auto set = [&](const Texture& texture, const std::string& name) {
         if (!texture) return;
@@ -64,7 +70,7 @@ ShaderInputs caster_inputs(const DrawItem& item, gpu::TextureCache& textures, bo
 }
 
 CasterSurface::CasterSurface(const ShadowView& view, int resolution, const DrawItem& item,
-                             gpu::TextureCache& textures, const float* colors) {
+                             gpu::Winding winding, gpu::TextureCache& textures, const float* colors) {
     const MeshData& mesh = item.mesh();
     const Mat4d clip_from_mesh = view.clip_from_world() * item.object->T_world_mesh.matrix();
     for (int row = 0; row < 4; ++row)
@@ -77,7 +83,7 @@ CasterSurface::CasterSurface(const ShadowView& view, int resolution, const DrawI
     if (casts_by_texture(item)) triangles_.attributes.uvs = mesh.UV.data();
     triangles_.attributes.colors = colors;
     Transfers none;
-    shader_ = native::caster_uniforms(caster_inputs(item, textures, true).native(none));
+    shader_ = native::caster_uniforms(caster_inputs(item, winding, textures, true).native(none));
     triangles_.shader = shader_.get();
 }
 

@@ -87,9 +87,13 @@ bool MeshShadows::rasterise_opaque(const ShadowView& view, std::span<const DrawI
     });
 }
 
+gpu::Winding MeshShadows::winding_of(const DrawItem& item) {
+    return item.is_volume() ? closed_.find(item.mesh()) : gpu::Winding::unknown;
+}
+
 CasterSurface MeshShadows::surface_of(const ShadowView& view, int resolution, const DrawItem& item) {
     const float* colors = item.with_colors ? native_.colors_of(item.mesh()) : nullptr;
-    return {view, resolution, item, textures_, colors};
+    return {view, resolution, item, winding_of(item), textures_, colors};
 }
 
 namespace {
@@ -161,7 +165,7 @@ void MeshShadows::use_shader(const ShadowLayer& layer, const DrawItem& item) {
     const gl::Program& program = programs_.get(mesh_caster_defines(item));
     program.use();
     program.set("u_clip_from_mesh", layer.clip_from_mesh(item));
-    caster_inputs(item, textures_, false).bind(program);
+    caster_inputs(item, winding_of(item), textures_, false).bind(program);
 }
 
 void MeshShadows::use_own_shader(const ShadowLayer& layer, const DrawItem& item) {
@@ -196,8 +200,9 @@ void MeshShadows::use_own_shader(const ShadowLayer& layer, const DrawItem& item)
     program.set("u_eye", Vec3(eye.cast<float>()));
     program.set("u_backwards",
                 Vec4(float(-along.x()), float(-along.y()), float(-along.z()), view.perspective ? 0 : 1));
-    program.set("u_through", light_through(item));
-    program.set("u_root", item.is_volume() ? 0.5f : 1.0f);
+    const float share = share_of_face(item, winding_of(item));
+    program.set("u_through", light_through(item, share));
+    program.set("u_root", share);
     const unsigned unit = material_inputs(core_model, item, textures_).bind(program);
     if (varies) {
         textures_.get(m.transmission_texture, gpu::TexelKind::data).bind(unit);

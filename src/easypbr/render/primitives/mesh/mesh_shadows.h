@@ -32,6 +32,8 @@ class MeshShadows {
                           ShadowDepths& depths) const;
     void rasterise_masked(const ShadowView& view, const DrawItem& item, ShadowDepths& depths);
     CasterSurface surface_of(const ShadowView& view, int resolution, const DrawItem& item);
+    /// Of a caster that light passes.
+    gpu::Winding winding_of(const DrawItem& item);
     void use_shader(const ShadowLayer& layer, const DrawItem& item);
     /// The same of an item with a shader of its own, whose holes are holes in its shadow.
     void use_own_shader(const ShadowLayer& layer, const DrawItem& item);
@@ -39,7 +41,7 @@ class MeshShadows {
     MeshCache& meshes_;
     NativeMeshes& native_;
     gpu::TextureCache& textures_;
-    const gpu::ClosedMeshes& closed_;
+    gpu::ClosedMeshes& closed_;
     VisibilityBuffer masked_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
     ProgramVariants shaded_{"geometry_mesh.vert", "shadow_shaded.frag"};
