@@ -74,7 +74,7 @@ class BloomTest : public ::testing::TestWithParam<bool> {
         const render::EffectInputs inputs{frame, targets, Box3d(), {}};
         GetParam() ? bloom.shade(inputs, lit, transfers) : bloom.draw(inputs, lit);
         render::OutputPass output(transfers);
-        output.begin(size, render::Encoding::scene_linear);
+        output.begin(size, render::Encoding::scene_linear, false);
         output.finish(frame, lit, nullptr, targets, nullptr);
         const std::vector<float> pixels = output.picture().read<float>(transfers);
         LightField result(size.x(), size.y());

@@ -6,6 +6,7 @@
 
 #include "easypbr/render/raytrace/path_batch.h"
 #include "easypbr/render/raytrace/ray_scene.h"
+#include "easypbr/render/raytrace/ray_surface.h"
 
 namespace easypbr::render {
 
@@ -45,6 +46,34 @@ inline void pass(const RayScene& scene, const PathBatch& batch, size_t path, Pat
     if (batch.extensions->volume.at(path).z() > 0) cross_volume(scene, at.surface, state);
 }
 
+/// Whether a path meets the surface of its volume from within.
+inline bool is_inside(const PathBatch& batch, size_t path) {
+    return batch.extensions && batch.inside[path] > 0.5f;
+}
+
+/// Of light that passes a path's surface.
+inline float passing_roughness(const PathBatch& batch, size_t path) {
+    return transmitted_roughness(batch.parameters.at(path).y(), batch.extensions->volume.at(path).y());
+}
+
+/// Whether lamps beyond are not looked for from a path's surface: it is clear, or the way into a volume.
+inline bool overlooks_lamps(const PathBatch& batch, size_t path, bool passes) {
+    const bool inside = is_inside(batch, path);
+    if (!passes && !inside) return false;
+    return passing_roughness(batch, path) < least_roughness ||
+           (!inside && batch.extensions->volume.at(path).z() > 0);
+}
+
+/// Light that a lamp in this direction sends a path: of one colour where it leaves a volume that disperses.
+inline Vec3 dispersed_on_entry(const PathBatch& batch, size_t path, const Vec3& direction,
+                               const Vec3& light) {
+    if (!batch.passes(path, direction) || is_inside(batch, path)) return light;
+    PathState passed = batch.state[path];
+    passed.throughput = light;
+    disperse(batch.extended_paths[path].channel, passed);
+    return passed.throughput;
+}
+
 /// The index of refraction of a volume, by a surface of it; 1 of none.
 inline float index_of(const RayScene& scene, int volume, int8_t channel) {
     if (volume < 0) return 1;
@@ -67,6 +96,14 @@ inline float relative_index(const RayScene& scene, const PathState& state, int s
     const size_t own = volume_of(scene, state, surface);
     if (own == volumes.size()) return index / index_of(scene, volumes[0], state.channel);
     return own == 0 ? index / index_of(scene, volumes[1], state.channel) : 1.0f;
+}
+
+/// The same of the medium around a path's surface, on whose other side its volume is.
+inline float squared_index_around(const RayScene& scene, const PathBatch& batch, size_t path) {
+    const float index2 = squared_index(scene, batch.state[path]);
+    if (!is_inside(batch, path)) return index2;
+    const float relative = batch.extensions->volume.at(path).y();
+    return index2 / (relative * relative);
 }
 
 /// The same of the medium that a direction from a path's surface leads into.

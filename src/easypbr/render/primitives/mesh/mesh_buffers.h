@@ -5,6 +5,7 @@
 
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/buffer.h"
+#include "easypbr/gpu/facing.h"
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::render {
