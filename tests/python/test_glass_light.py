@@ -292,20 +292,40 @@ def test_an_area_light_within_glass_sends_out_all_of_its_light(roughness):
     lamp = {"type": "sphere", "position": (0, 2, 0), "intensity": 100, "radius": 0.1}
     camera = {"position": (3.4, 1, 0.13), "target": (0.1, 0, 0.13)}
     bare, within = (picture([floor, *more], camera, lamp, samples=4096, path={"bounces": 16}) for more in ([], [globe]))
-    # Radiance in glass is n^2 of that outside, and the cone in which it leaves is 1 / n^2 of a half space. 5 %: noise; a path of
-    # sixty meets the globe, and the lamp is an eightieth of the directions there.
+    # Radiance in glass is n^2 of that outside, and the cone in which it leaves is 1 / n^2 of a half space. 5 %: noise; a path
+    # of sixty meets the globe, and the lamp is an eightieth of the directions there.
     np.testing.assert_allclose(within / bare, 1, rtol=0.05)
 
 
 @pytest.mark.parametrize("lamp", ["directional", "point", "spot"])
 def test_lamps_shine_on_what_stands_in_glass_as_areas_do(lamp):
-    within, around = sheet(2.5, 40), box((-50, 2, -50), (50, 3, 50))
+    within, around = sheet(0, 40), box((-50, -0.5, -50), (50, 0.5, 50))
     within.material, around.material = matt(), glass(thickness=1)
-    camera = {"position": (6, 12, 0.13), "target": (0.1, 2.5, 0.13)}
+    camera = {"position": (6, 9, 0.13), "target": (0.1, 0, 0.13)}
     shines = {name: picture([within, around], camera, {"type": name, **LAMPS_ABOVE[name]}, samples=1024, path={"bounces": 32})
               for name in (lamp, "disc")}
     # 4 %: the noise of the disc, which is found by chance: it is an eightieth of the directions.
     np.testing.assert_allclose(shines[lamp], shines["disc"], rtol=0.04)
+
+
+@pytest.mark.parametrize("hidden", [True, False])
+@pytest.mark.parametrize("light", ["sphere", "mesh"])
+def test_a_volume_absorbs_the_light_that_shines_within_it(light, hidden):
+    floor, around = sheet(0, 40), box((-50, -1, -50), (50, 5, 50))
+    floor.material, around.material = matt(), absorbing(ior=1, specular=0)
+    shape = shapes.sphere(0.5)
+    shape.translate((0, 3, 0))
+    shape.material = Material(base_color="black", specular=0, emissive=(20, 20, 20))
+    lamp = {"type": "sphere", "position": (0, 3, 0), "radius": 0.5, "intensity": 20, "casts_shadows": hidden}
+    shining = ([shape], None) if light == "mesh" else ([], lamp)
+    camera = {"position": (6, 9, 0.13), "target": (3, 0, 0.13)}
+    bare, within = (picture([floor, *more, *shining[0]], camera, shining[1], samples=256, path={"bounces": 1})
+                    for more in ([], [around]))
+    # The ways to the nearest part of the ball and to its border, and to where the camera's ray enters the volume. 2 %: what the
+    # floor sends to itself in neither, and noise.
+    middle, seen = math.dist((3, 0, 0.13), (0, 3, 0)), math.dist((3, 0), (3 + 5 / 3, 5))
+    left = within / bare / ABSORBING**seen
+    assert (left < ABSORBING ** (middle - 0.5) * 1.02).all() and (left > ABSORBING**middle * 0.98).all()
 
 
 @pytest.mark.parametrize("roughness", [0.12, 0.2, 0.5])

@@ -276,13 +276,19 @@ gl::Texture make_texture(const Image& image, TexelKind kind, const std::string& 
     const int count = gl::full_levels(level.width(), level.height());
     gl::Texture texture(kind == TexelKind::data ? gl::Format::rgba8 : gl::Format::srgb8_alpha8, level.width(),
                         level.height(), count);
-    std::vector<Image> levels;
-    levels.push_back(std::move(level));
-    for (int i = 1; i < count; ++i) levels.push_back(next_level(levels.back(), kind));
-    if (kind == TexelKind::covering_color)
-        for (size_t i = levels.size() - 1; i > 0; --i) fill_hidden(levels[i - 1], levels[i]);
-    for (size_t i = 0; i < levels.size(); ++i)
-        texture.upload_u8(levels[i].bytes(), levels[i].channels(), int(i));
+    std::vector<Image> covering;  // levels that change once the next one is known
+    for (int i = 0; i < count; ++i) {
+        Image next = i + 1 < count ? next_level(level, kind) : Image();
+        if (kind == TexelKind::covering_color)
+            covering.push_back(std::move(level));
+        else
+            texture.upload_u8(level.bytes(), level.channels(), i);
+        level = std::move(next);
+    }
+    for (size_t i = covering.size(); i > 0; --i) {
+        if (i < covering.size()) fill_hidden(covering[i - 1], covering[i]);
+        texture.upload_u8(covering[i - 1].bytes(), covering[i - 1].channels(), int(i - 1));
+    }
     texture.sampling(gl::Filtering::trilinear);
     return texture;
 }

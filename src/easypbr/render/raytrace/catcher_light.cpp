@@ -125,7 +125,9 @@ void CatcherLight::add_matt(const PathBatch& batch, size_t path, const SkySample
     };
     add(luminance(sky.radiance) * density / (sky.density + density), no_end);
     lights_->for_each_met(batch.position.at(path), sky.direction, density,
-                          [&](const Vec3& light, float distance) { add(luminance(light), distance); });
+                          [&](const Vec3& light, float distance, bool is_hidden) {
+                              add(luminance(light), is_hidden ? distance : -1.0f);
+                          });
 }
 
 void CatcherLight::add_lamps(const PathBatch& batch, uint32_t depth, std::vector<CaughtLight>& light) const {

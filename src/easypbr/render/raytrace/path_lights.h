@@ -48,15 +48,14 @@ class PathLights {
     bool has_areas() const { return !areas_.empty(); }
 
     /// Calls `visit` with each area light that a direction meets which was sampled by the BSDF with a density
-    /// per steradian: with its radiance times the weight by MIS, and the distance at which it is met; -1 for
-    /// lights that nothing hides.
+    /// per steradian: with its radiance times the weight by MIS, the distance at which it is met, and whether
+    /// what lies before hides it.
     template <class Visit>
     void for_each_met(const Vec3& place, const Vec3& direction, float density, Visit&& visit) const {
         for (const Area& area : areas_) {
             const auto [distance, chosen] = met(area, place, direction);
             if (chosen > 0)
-                visit(Vec3(area.radiance * (density / (density + chosen))),
-                      area.casts_shadows ? distance : -1.0f);
+                visit(Vec3(area.radiance * (density / (density + chosen))), distance, area.casts_shadows);
         }
     }
 

@@ -216,14 +216,15 @@ void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight
     for (size_t i = 0; i < batch.count; ++i) {
         if (!(lamps[i].all > 0)) continue;
         const bool inside = is_inside(batch, i), passes = batch.passes(i, lamps[i].way);
+        const bool straight = lights_.shines_straight(lamps[i].index);
         // From what lies before such a face its light has been found straight through it.
-        if ((inside || passes) && batch.state[i].found_lamps && lights_.shines_straight(lamps[i].index) &&
-            passing_roughness(batch, i) < nearly_clear)
-            continue;
+        const float passed = batch.state[i].found_lamps ? nearly_clear : least_roughness;
+        if ((inside || passes) && straight && lamp_roughness(*scene_, batch, i) < passed) continue;
         RaySegment ray = lights_.towards(lamps[i], batch.position.at(i));
         ray.from = start_to_lamp(batch, i, ray.direction);
         // From the way into a volume lamps are found that are within: others where paths leave it.
-        stopping.push_back(passes && overlooks_lamps(batch, i, true) ? least_roughness : nearly_clear);
+        const bool within = passes && !batch.state[i].found_lamps && overlooks_lamps(*scene_, batch, i, true);
+        stopping.push_back(within ? least_roughness : nearly_clear);
         rays.push_back(ray);
         lights.push_back(lamps[i].index);
         paths.push_back(uint32_t(i));
@@ -232,7 +233,10 @@ void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight
     const std::vector<Vec3> left = lights_.transmittances(rays, lights, stopping, *scene_);
     for (size_t i = 0; i < rays.size(); ++i) {
         const size_t path = paths[i];
-        const Vec3 found = lamps[path].light.cwiseProduct(left[i]);
+        Vec3 found = lamps[path].light.cwiseProduct(left[i]);
+        // Straight light has been absorbed on its way.
+        if (!lights_.shines_straight(lights[i]))
+            found = found.cwiseProduct(left_on_the_way(batch, path, lamps[path].way, lamps[path].way.norm()));
         light[path] += dispersed_on_entry(batch, path, lamps[path].way, found) /
                        squared_index_around(*scene_, batch, path);
     }
@@ -271,7 +275,9 @@ void PathTracer::add_chosen(const PathBatch& batch, uint32_t depth, const Scatte
         // Where a background of one colour is seen through surfaces there is no sky.
         const bool seen_through = !batch.state[i].reflected && batch.passes(i, direction);
         if (background_ && seen_through && std::isinf(distance)) continue;
-        if (distance <= 0 || arrives(batch, i, depth, direction, distance)) light[i] += chosen;
+        if (distance > 0 && !arrives(batch, i, depth, direction, distance)) continue;
+        const bool is_sky = std::isinf(distance);
+        light[i] += is_sky ? chosen : chosen.cwiseProduct(left_on_the_way(batch, i, direction, distance));
     }
 }
 
@@ -311,7 +317,7 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
     const bool inside = is_inside(batch, path), passes = batch.passes(path, direction),
                transmits = batch.transmits(path, direction);
     state.reflected |= !transmits;
-    state.found_lamps |= !overlooks_lamps(batch, path, passes);
+    state.found_lamps |= !overlooks_lamps(*scene_, batch, path, passes);
     if (passes) pass(*scene_, batch, path, state);
     const bool is_sure =
         inside || transmits ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
@@ -368,8 +374,8 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
         if (!goes_on(batch, i, depth, direction, state)) continue;
         const auto hit = scene_->trace(start_towards(batch, i, direction), direction, Transmissive::met);
         lights_.for_each_met(batch.position.at(i), direction, scattered.density[i],
-                             [&](const Vec3& light, float distance) {
-                                 if (hit && hit->distance < distance) return;
+                             [&](const Vec3& light, float distance, bool is_hidden) {
+                                 if (is_hidden && hit && hit->distance < distance) return;
                                  PathState at_lamp = state;
                                  absorb(distance, at_lamp);
                                  const Vec3 found = light / squared_index(*scene_, state);

@@ -20,7 +20,7 @@ struct HitSurfaces;
 /// next-event estimation at each surface, and what directions find that are sampled by the BSDF. The sky and
 /// emissive surfaces are found both ways, combined by MIS (Veach and Guibas 1995). Materials are evaluated by
 /// shaders/path_plain.glsl and path_extended.glsl, the text that the raster frame lights surfaces by. Lamps
-/// shine straight through transmissive surfaces; all other light is refracted.
+/// shine straight through clear and nearly clear surfaces; all other light is refracted.
 class PathTracer {
   public:
     /// The settings and the scene must outlive the calls of the others. `most`: luminance of one path that is
@@ -97,6 +97,8 @@ class PathTracer {
     Vec3 shown(const HitSurfaces& surfaces, size_t i, const PathState& state) const;
     /// Weakens a path by the volume that it is in.
     void absorb(float distance, PathState& state) const;
+    /// What the volume leaves of light that comes to a path's surface from this far in a direction.
+    Vec3 left_on_the_way(const PathBatch& batch, size_t path, const Vec3& direction, float distance) const;
     /// The paths that go on from hits.
     Batches arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const;
     /// Part of what surfaces emit that paths add which have met them in sampled directions.

@@ -82,6 +82,17 @@ void PathTracer::meet_volume(PathBatch& batch, size_t path, const Hit& hit, uint
     if (volume.z() > 0) surround(batch, path);
 }
 
+Vec3 PathTracer::left_on_the_way(const PathBatch& batch, size_t path, const Vec3& direction,
+                                 float distance) const {
+    const bool passes = batch.passes(path, direction);
+    if (batch.state[path].volumes[0] < 0 && !passes) return Vec3::Ones();
+    PathState state = batch.state[path];
+    if (passes) pass(*scene_, batch, path, state);
+    state.throughput.setOnes();
+    absorb(std::max(distance, 0.0f), state);
+    return state.throughput;
+}
+
 void PathTracer::absorb(float distance, PathState& state) const {
     if (state.volumes[0] < 0) return;
     const Vec3 absorption = absorption_[size_t(state.volumes[0])];

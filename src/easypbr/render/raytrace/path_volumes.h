@@ -1,4 +1,4 @@
-// The volumes that paths are in.
+// The volumes that paths are in, and what their surfaces do to the light of lamps.
 #pragma once
 
 #include <algorithm>
@@ -51,16 +51,18 @@ inline bool is_inside(const PathBatch& batch, size_t path) {
     return batch.extensions && batch.inside[path] > 0.5f;
 }
 
-/// Of light that passes a path's surface.
-inline float passing_roughness(const PathBatch& batch, size_t path) {
-    return transmitted_roughness(batch.parameters.at(path).y(), batch.extensions->volume.at(path).y());
+/// Of light of lamps that passes a path's surface straight, as Passage::roughness has it: against air.
+inline float lamp_roughness(const RayScene& scene, const PathBatch& batch, size_t path) {
+    const Material& material = scene.item_of(batch.extended_paths[path].surface).material;
+    return transmitted_roughness(batch.parameters.at(path).y(), material.ior);
 }
 
 /// Whether lamps beyond are not looked for from a path's surface: it is clear, or the way into a volume.
-inline bool overlooks_lamps(const PathBatch& batch, size_t path, bool passes) {
+/// `passes`: the path goes on through the surface.
+inline bool overlooks_lamps(const RayScene& scene, const PathBatch& batch, size_t path, bool passes) {
     const bool inside = is_inside(batch, path);
     if (!passes && !inside) return false;
-    return passing_roughness(batch, path) < least_roughness ||
+    return lamp_roughness(scene, batch, path) < least_roughness ||
            (!inside && batch.extensions->volume.at(path).z() > 0);
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "easypbr/core/folder.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_io.h"
@@ -58,13 +59,8 @@ class Images {
         std::span<const std::byte> bytes;
         Texture texture;
 
-        /// In bytes; 0 where that is not known.
-        uintmax_t encoded_size() const {
-            if (path.empty()) return bytes.size();
-            std::error_code unknown;
-            const uintmax_t size = std::filesystem::file_size(path, unknown);
-            return unknown ? 0 : size;
-        }
+        uintmax_t encoded_size = 0;  ///< in bytes; 0 where that is not known
+
         void decode() {
             try {
                 if (path.empty())
@@ -86,14 +82,21 @@ class Images {
             const Json& json = document_.item("images", index);
             if (const auto view = document_.optional_integer(json, "bufferView")) {
                 entry.bytes = document_.buffer_view(*view);
+                entry.encoded_size = entry.bytes.size();
                 return true;
             }
             const std::string uri = document_.text(json, "uri");
             if (auto decoded = document_.data_of_uri(uri)) {
                 entry.decoded = std::move(*decoded);
                 entry.bytes = entry.decoded;
+                entry.encoded_size = entry.bytes.size();
             } else {
                 entry.path = document_.path_of_uri(uri).string();
+                std::error_code unknown;
+                // Nothing outside of a folder is looked at.
+                if (!FolderScope::current())
+                    entry.encoded_size = std::filesystem::file_size(entry.path, unknown);
+                if (unknown) entry.encoded_size = 0;
             }
             return true;
         } catch (const Error& error) {

@@ -237,7 +237,8 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         for (const Stroke& stroke : strokes_of(item)) {
             ShaderInputs values = of_item;
             if (reads_table(item, stroke))
-                values.set("u_table", textures_.host(item.material.base_color_texture, gpu::TexelKind::color));
+                values.set("u_table",
+                           textures_.host(item.material.base_color_texture, gpu::TexelKind::color));
             set_colors(values, item, stroke);
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normals);
             native::draw_lines(values.native(transfers), region,
