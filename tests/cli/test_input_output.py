@@ -77,7 +77,8 @@ def test_a_pipe_is_no_file(render, box, tmp_path, option):
     # Extensions that the options take; a pipe without a writer would block whoever opens it as a file.
     pipe = tmp_path / ("pipe.png" if option == "--background" else "pipe.exr" if option == "--env" else "pipe.json")
     os.mkfifo(pipe)
-    error = render(box, "-o", "out.png", option, pipe, code=1).stderr
+    output = "out_%02d.png" if option == "--camera-path" else "out.png"
+    error = render(box, "-o", output, option, pipe, code=1).stderr
     assert f"cannot read {pipe}: it is a pipe, not a regular file" in error
     assert "it is a pipe" in render(pipe, "-o", "out.png", code=1).stderr
 
