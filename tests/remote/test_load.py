@@ -86,7 +86,7 @@ def come_and_go(server, count):
 
 
 def test_a_thousand_clients_leave_nothing_behind(server):
-    come_and_go(server, 300)  # The allocator's and the driver's caches fill.
+    come_and_go(server, 1000)  # The allocator's and the driver's caches fill, by how many are there at once.
     time.sleep(1)
     memory, (files, threads) = server.memory(), server.things()
     come_and_go(server, 1000)

@@ -71,7 +71,8 @@ Image next_level(const Image& image, TexelKind kind) {
                 if (c < colors) {
                     const std::array<float, 4> light{decode[p[0][c]], decode[p[1][c]], decode[p[2][c]],
                                                      decode[p[3][c]]};
-                    to[c] = encode[size_t(mean_of(light, weights) * 4095.0f + 0.5f)];
+                    const float code = mean_of(light, weights) * 4095.0f + 0.5f;
+                    to[c] = encode[size_t(code)];
                 } else {
                     to[c] = uint8_t((p[0][c] + p[1][c] + p[2][c] + p[3][c] + 2) / 4);
                 }
@@ -168,7 +169,7 @@ void average_covered(const std::array<const T*, 4>& from, T* to) {
     for (size_t c = 0; c < 3; ++c) {
         const std::array<double, 4> values{double(from[0][c]), double(from[1][c]), double(from[2][c]),
                                            double(from[3][c])};
-        to[c] = T(mean_of(values, alpha) + 0.5);
+        to[c] = T(std::lround(mean_of(values, alpha)));
     }
 }
 
