@@ -121,9 +121,9 @@ TEST(PathSurfaces, LampsOnMappedNormals) {
     }
 }
 
-// Normals that a map leans by up to 85 degrees send most of the light below the face. It is mirrored there:
+// Normals that a map tilts by up to 85 degrees send most of the light below the face. It is mirrored there:
 // it meets the surface once, and a part of 0.8 of an even sky is left. 0.005: as of Paths.WhiteFurnace.
-TEST(PathSurfaces, LeaningNormalsReflectOnce) {
+TEST(PathSurfaces, TiltedNormalsReflectOnce) {
     for (const double tilt : {70.0, 76.0, 80.0, 85.0})
         for (const double height : {70.0, 40.0, 15.0}) {
             Material m = matt(0.8f);

@@ -161,7 +161,7 @@ void fill_level(const Image& image, Wrap wrap, const HostLevel<T>& to, Color&& c
     });
 }
 
-/// Of texels that are not alike in alpha, which alone count by it.
+/// The mean colour of four texels, weighted by their alpha, which must not be 0 for all.
 template <class T>
 void average_covered(const std::array<const T*, 4>& from, T* to) {
     std::array<T, 4> alpha;
@@ -196,7 +196,7 @@ void fill_smaller(const HostLevel<T>& from, Wrap wrap, const HostLevel<T>& to) {
     });
 }
 
-/// As that of images.
+/// As fill_hidden() of images.
 template <class T>
 void fill_hidden(const HostLevel<T>& level, Wrap wrap, const HostLevel<T>& smaller) {
     parallel_for(size_t(level.height), 32, [&](size_t y) {
