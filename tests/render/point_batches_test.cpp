@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
-#include "easypbr/core/background.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raster/visibility.h"
 #include "view_of_center.h"
@@ -46,9 +45,16 @@ std::vector<uint64_t> drawn(const Array3f& V, PointSplats splats, const PointBat
     VisibilityBuffer buffer;
     buffer.clear(size, area);
     if (layer) buffer.begin_layer(*layer);
+    const auto vertex_of = [&](uint32_t id) { return batches ? batches->vertex_of(id - 7) : id - 7; };
     // Some of those at one place look the same.
-    buffer.draw_points(V, splats, 7, [](uint32_t id) { return uint64_t(id % 3); });
-    return {buffer.pixels().begin(), buffer.pixels().end()};
+    buffer.draw_points(V, splats, 7, [&](uint32_t id) {
+        return PointRank{uint64_t(vertex_of(id) % 3), vertex_of(id)};
+    });
+    // Depths and vertices: points are numbered by batches.
+    std::vector<uint64_t> seen(buffer.pixels().begin(), buffer.pixels().end());
+    for (uint64_t& pixel : seen)
+        if (pixel != 0) pixel = pixel >> 32 << 32 | vertex_of(VisibilityBuffer::id_of(pixel));
+    return seen;
 }
 
 TEST(PointBatches, HoldEachPointOnce) {
@@ -65,6 +71,7 @@ TEST(PointBatches, HoldEachPointOnce) {
             const float* const p = made.points_of(batch) + i;
             const Vec3 copy(p[0], p[own], p[2 * own]);
             ASSERT_EQ(copy, Vec3(V.row(id)));
+            ASSERT_EQ(made.vertex_of(PointBatches::first_place(batch) + uint32_t(i)), id);
             EXPECT_LE((copy - made.sphere_of(batch).center).norm(), made.sphere_of(batch).radius * 1.0001f);
         }
     }
@@ -169,19 +176,6 @@ TEST(PointBatches, AreLeftOutWhereTheyAreHidden) {
     asked = 0;
     tbb::task_arena(1).execute([&] { EXPECT_EQ(drawn(points, splats, &batches, whole), expected); });
     EXPECT_LT(asked, across * across + behind / 10);
-}
-
-TEST(BatchedClouds, AreMadeWhenACloudIsDrawnAgain) {
-    const Array3f large = cloud(1 << 15, 6), small = cloud(1000, 7);
-    BatchedClouds known;
-    EXPECT_EQ(known.draw(large), nullptr);
-    known.draw(large);
-    BackgroundWork::wait_for_all();
-    EXPECT_NE(known.draw(large), nullptr);
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(known.draw(small), nullptr);
-        BackgroundWork::wait_for_all();
-    }
 }
 
 }  // namespace

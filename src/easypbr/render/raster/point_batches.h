@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "easypbr/core/large_array.h"
 #include "easypbr/core/math.h"
 #include "easypbr/native/kernels.h"
-#include "easypbr/render/raster/batch_cache.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
@@ -23,6 +23,10 @@ class PointBatches {
     const float* points_of(size_t batch) const { return blocks_[batch].points; }
     /// The vertices that they are, in the same order; behind the points in memory.
     const uint32_t* ids_of(size_t batch) const { return blocks_[batch].ids; }
+    /// The place of the first point of a batch: places count all points in the order of the batches.
+    static uint32_t first_place(size_t batch) { return uint32_t(most * batch); }
+    /// The vertex at a place.
+    uint32_t vertex_of(uint32_t place) const { return blocks_[place / most].ids[place % most]; }
     /// Around the points; infinite where one is not finite.
     struct Sphere {
         Vec3 center;
@@ -43,27 +47,11 @@ class PointBatches {
     static_assert(sizeof(Block) == block_size);
 
     size_t point_count_ = 0;
-    std::vector<Block> blocks_;
+    LargeVector<Block> blocks_;
     std::vector<Sphere> spheres_;
 };
 
 /// Around points: all x, all y, all z. Infinite where one is not finite.
 PointBatches::Sphere sphere_around(const float* points, int count);
-
-/// The batches of clouds, by the revision of their points.
-class BatchedClouds {
-  public:
-    const PointBatches* draw(const Array3f& V) {
-        if (V.rows() < small_cloud) return nullptr;
-        return batches_.draw(V.revision(), [V] { return PointBatches(V); });
-    }
-    void evict_unused() { batches_.evict_unused(); }
-
-  private:
-    /// Points that are drawn in a millisecond.
-    static constexpr Eigen::Index small_cloud = 1 << 15;
-
-    BatchCache<uint64_t, PointBatches> batches_;
-};
 
 }  // namespace easypbr::render

@@ -65,7 +65,7 @@ class PointRaster {
         return inside ? point : ScreenPoint{};
     }
 
-    /// Calls draw(depth, vertex, cover) for all points that project() finds inside, on all cores; cover(put)
+    /// Calls draw(depth, place, cover) for all points that project() finds inside, on all cores; cover(put)
     /// calls put(column, line) as the function below does, for the whole area. Batches are left out where
     /// depths.hides(bounds), and pixels where `seen`, unless it is null, is nearer: see native::PointBatch.
     template <class Draw, class Depths>
@@ -96,7 +96,7 @@ class PointRaster {
                 const int kept = native::set_up_points(own, screen);
                 for (int k = 0; k < kept; ++k) {
                     const int at = screen.kept[k];
-                    draw(screen.depth[at], batches.ids_of(i)[at],
+                    draw(screen.depth[at], PointBatches::first_place(i) + uint32_t(at),
                          [&](const auto& put) { cover(screen, at, put); });
                 }
             }

@@ -36,6 +36,8 @@ class SurfaceWriter {
     }
     const PixelRect& area() const { return area_; }
     float depth(size_t index) const { return depth_[index]; }
+    /// Whether the elements of pixels are asked for.
+    bool has_elements() const { return !element_.empty(); }
     void put(size_t index, const SurfacePixel& pixel);
     void put_nothing(size_t index) {
         depth_[index] = 0;

@@ -39,22 +39,23 @@ template <class Key>
 
 /// The same for points of a depth that is kept already, or is about to be: of equal depths the larger
 /// content, of equal contents the smaller id.
-void replace_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
+void replace_point(uint64_t& pixel, uint64_t key, const std::function<PointRank(uint32_t)>& rank) {
     const std::atomic_ref<uint64_t> cell(pixel);
     uint64_t seen = cell.load(std::memory_order_relaxed);
     for (;;) {
         if (seen >> 32 > key >> 32) return;
         if (seen >> 32 == key >> 32) {
-            const uint64_t mine = content(VisibilityBuffer::id_of(key)),
-                           other = content(VisibilityBuffer::id_of(seen));
-            if (other > mine || (other == mine && seen >= key)) return;
+            const PointRank mine = rank(VisibilityBuffer::id_of(key)),
+                            other = rank(VisibilityBuffer::id_of(seen));
+            if (other.content > mine.content) return;
+            if (other.content == mine.content && other.number <= mine.number) return;
         }
         if (cell.compare_exchange_weak(seen, key, std::memory_order_relaxed)) return;
     }
 }
-inline void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
+inline void raise_point(uint64_t& pixel, uint64_t key, const std::function<PointRank(uint32_t)>& rank) {
     const uint64_t seen = load_relaxed(pixel);
-    if (seen >> 32 <= key >> 32) replace_point(pixel, key, content);
+    if (seen >> 32 <= key >> 32) replace_point(pixel, key, rank);
 }
 
 /// The limit of a pixel of which no layer is left: nothing is as near.
@@ -202,16 +203,16 @@ bool cover(TriangleRaster& raster, const ScreenTriangles& triangles, std::span<u
 }
 
 void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
-                                   const std::function<uint64_t(uint32_t id)>& content) {
+                                   const std::function<PointRank(uint32_t id)>& rank) {
     const KeyOrder order(limits_);
     const PixelRect& area = raster_.area();
     const PointRaster raster(splats, raster_.size(), area);
     const auto draw = [&](float depth, uint32_t i, const auto& cover) {
-        if (splats.is_drawn && !splats.is_drawn(i)) return;
+        if (splats.is_drawn && !splats.is_drawn(splats.batches ? splats.batches->vertex_of(i) : i)) return;
         const uint64_t key = order.key(depth, first_id + i);
         cover([&](int column, int line) {
             const size_t pixel = size_t(line - area.y) * size_t(area.width) + size_t(column - area.x);
-            if (order.takes(pixel, depth)) raise_point(pixels_[pixel], key, content);
+            if (order.takes(pixel, depth)) raise_point(pixels_[pixel], key, rank);
         });
     };
     if (splats.batches)

@@ -26,6 +26,13 @@ struct AlphaTest {
     float cutoff = 0.5f;
 };
 
+/// Which of the points of equal depth is seen: the one of the larger content, of these the one of the lower
+/// number. Neither depends on the order in which they are drawn.
+struct PointRank {
+    uint64_t content = 0;
+    uint32_t number = 0;
+};
+
 /// One layer of depth peeling. Only what is nearer than a limit is drawn, or with `backs` what is farther.
 struct PeelLimits {
     PooledVector<float> depths;  ///< reversed, of the pixels of the area, row by row
@@ -58,11 +65,11 @@ class VisibilityBuffer {
     bool draw(const ScreenTriangles& triangles, uint32_t first_id, const AlphaTest* test = nullptr);
 
     /// Draws points numbered from `first_id` as discs or squares that face the viewer; each covers at least
-    /// the pixel that it lies in. Points before the near plane or outside of the picture are left out. Of
-    /// points of equal depth the one with the larger `content` is kept, so that the picture does not depend
-    /// on their order; it is asked for by id, that of what is there already too.
+    /// the pixel that it lies in. They are numbered in the order of their batches where there are any. Points
+    /// before the near plane or outside of the picture are left out. `rank` decides among points of equal
+    /// depth; it is asked for by id, that of what is there already too.
     void draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
-                     const std::function<uint64_t(uint32_t id)>& content);
+                     const std::function<PointRank(uint32_t id)>& rank);
 
     /// Whether nothing of what lies within the bounds would be seen. False while a layer is drawn, of which
     /// what is seen is not always the nearest.

@@ -30,9 +30,11 @@ const VisibleSurfaces::Entry& VisibleSurfaces::entry_of(uint32_t id) const {
                                        [](uint32_t v, const Entry& entry) { return v < entry.first_id; }));
 }
 
-uint64_t VisibleSurfaces::content(uint32_t id) const {
+PointRank VisibleSurfaces::rank(uint32_t id) const {
     const Entry& entry = entry_of(id);
-    return entry.visible->content(id - entry.first_id);
+    PointRank rank = entry.visible->rank(id - entry.first_id);
+    rank.number += entry.first_id;
+    return rank;
 }
 
 const PixelRect& VisibleSurfaces::crop() {

@@ -20,8 +20,8 @@ class VisibleItem {
     /// Writes the surfaces of some pixels.
     virtual void resolve(const Frame& frame, const DrawItem& item,
                          std::span<const native::VisiblePixel> pixels, SurfaceWriter& writer) const = 0;
-    /// Of points at the same depth the one with the larger content is seen.
-    virtual uint64_t content(uint32_t) const { return 0; }
+    /// Which of the points at the same depth is seen. The number is that of a vertex.
+    virtual PointRank rank(uint32_t primitive) const { return {0, primitive}; }
 };
 
 class VisibleSurfaces {
@@ -37,7 +37,8 @@ class VisibleSurfaces {
     /// Adds an item of so many primitives; returns the id of the first, to be drawn into buffer().
     uint32_t add(const DrawItem& item, uint32_t count, std::unique_ptr<VisibleItem> visible);
     VisibilityBuffer& buffer() { return buffer_; }
-    uint64_t content(uint32_t id) const;
+    /// Of a primitive by its id. Numbers of different items differ.
+    PointRank rank(uint32_t id) const;
     bool empty() const { return items_.empty(); }
 
     /// Shrinks the area to what is covered.

@@ -25,15 +25,16 @@ bool PointPrimitive::is_native(DrawItems items) const {
 
 bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet, VisibleSurfaces& surfaces) {
     if (surfaces.buffer().takes_backs()) return true;
-    const auto content = [&](uint32_t id) { return surfaces.content(id); };
+    const auto rank = [&](uint32_t id) { return surfaces.rank(id); };
     for (const DrawItem& item : items) {
         const Array3f& V = item.mesh().V;
         if (!surfaces.has_room(V.rows())) return false;
-        const uint32_t first =
-            surfaces.add(item, uint32_t(V.rows()), std::make_unique<PointSurface>(item, frame));
         PointSplats splats = splats_of(item, frame, spacings_);
-        splats.batches = batches_.draw(V);
-        surfaces.buffer().draw_points(V, splats, first, content);
+        const PointOrder order = batches_.draw(item.mesh(), item.with_colors);
+        splats.batches = order.batches;
+        const uint32_t first =
+            surfaces.add(item, uint32_t(V.rows()), std::make_unique<PointSurface>(item, frame, order));
+        surfaces.buffer().draw_points(V, splats, first, rank);
     }
     return true;
 }

@@ -1,6 +1,7 @@
 // Point clouds.
 #pragma once
 
+#include "easypbr/render/primitives/points/point_order.h"
 #include "easypbr/render/primitives/points/point_pass.h"
 #include "easypbr/render/primitives/points/point_shadows.h"
 #include "easypbr/render/primitives/primitive.h"

@@ -50,7 +50,7 @@ void PointShadows::draw(const ShadowLayer& layer, const DrawItem& item) {
 
 void PointShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths) {
     const int size = depths.resolution();
-    const auto same = [](uint32_t) -> uint64_t { return 0; };
+    const auto same = [](uint32_t id) { return PointRank{0, id}; };
     visibility_.clear(Vec2i(size, size), {0, 0, size, size});
     for (const DrawItem* item : casters)
         visibility_.draw_points(centres_of(view, *item), splats_of({view, size}, *item), 0, same);
