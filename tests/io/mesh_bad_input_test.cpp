@@ -127,7 +127,7 @@ const std::vector<BadFile> bad_files{
     {"word.obj", square + "f 1 2 x\n", "word.obj:5"},
     {"corner.obj", square + "f 1/a 2/2 3\n", "'a'"},
     {"nan.obj", "v 0 0 nan\n", "vertex 0"},
-    {"line.obj", square + "l 1\n", "'l'"},
+    {"line.obj", square + "l 1", "'l'"},
     {"huge.obj", square + "f 1 2 99999999999999999999\n", "a face"},
     {"empty.stl", "", "empty"},
     {"tiny.stl", "abc", "truncated"},

@@ -10,6 +10,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/scene/mesh.h"
+#include "io/gltf_decoded.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::obj_test {
@@ -158,6 +159,72 @@ TEST(Obj, ReadsMaterialFactors) {
     EXPECT_FLOAT_EQ(read_material("Ns 30\n", folder).roughness, 0.5f);
     EXPECT_EQ(read_material("Kd nan 0 0\nPr 7\n", folder).base_color, Material().base_color);
     EXPECT_EQ(read_material("Pr 7\n", folder).roughness, 1);
+}
+
+TEST(Obj, DissolveCountsBesideTransparency) {
+    const TemporaryFolder folder;
+    const LogCapture log;
+    EXPECT_EQ(read_material("d 0.5\nTr 0\n", folder).opacity, 0.5f);
+    EXPECT_EQ(read_material("Tr 0\nd 0.5\n", folder).opacity, 0.5f);
+    EXPECT_EQ(read_material("d 0\n", folder).opacity, 0);
+    EXPECT_EQ(log.text, "");
+}
+
+// What MeshLab, OpenMVS and mvs-texturing write for opaque materials.
+TEST(Obj, ATransparencyOf1IsOpaque) {
+    const TemporaryFolder folder;
+    for (const char* line : {"Tr 1\n", "Tr 1.000000\n"}) {
+        const LogCapture log;
+        const Material material = read_material(line, folder);
+        EXPECT_EQ(material.opacity, 1) << line;
+        EXPECT_FALSE(material.alpha_mode.value()) << "opaque";
+        EXPECT_NE(log.text.find("'Tr 1' without 'd' is taken as opaque"), std::string::npos) << log.text;
+        EXPECT_NE(log.text.find("material 'red paint'"), std::string::npos) << log.text;
+    }
+    const LogCapture log;
+    EXPECT_EQ(read_material("Tr 1\nd 0.25\n", folder).opacity, 0.25f);
+    EXPECT_EQ(log.text, "");
+}
+
+// vtkOBJExporter: its comment, and GetOpacity() as Tr.
+TEST(Obj, TheTransparencyOfVtkIsAnOpacity) {
+    const TemporaryFolder folder;
+    const LogCapture log;
+    const auto opacity_of = [&](const std::string& head, const std::string& line) {
+        write_file(folder / "m.mtl", head + "newmtl mtl0\nKd 1 0 0\n" + line);
+        return read("mtllib m.mtl\n" + square + "usemtl mtl0\nf 1 2 3\n", folder / "test.obj")
+            .materials.at(0)
+            .opacity;
+    };
+    const std::string vtk = "# wavefront mtl file written by the visualization toolkit\n\n";
+    EXPECT_EQ(opacity_of(vtk, "Tr 0.25\n"), 0.25f);
+    EXPECT_EQ(opacity_of(vtk, "Tr 1\n"), 1);
+    EXPECT_EQ(opacity_of(vtk, "Tr 0.25\nd 0.5\n"), 0.5f);
+    EXPECT_EQ(opacity_of("# another\n", "# not of the Visualization Toolkit\nTr 0.25\n"), 0.75f)
+        << "no comment before the first material";
+    EXPECT_EQ(log.text, "");
+}
+
+// vtkOBJExporter has no blanks between the corners of lines with texture coordinates.
+TEST(Obj, LeavesOutBrokenLines) {
+    const auto edges_of = [](const std::string& lines) { return read(square + "vt 0 0\n" + lines).E; };
+    {
+        const LogCapture log;
+        EXPECT_EQ(edges_of("l 1/1 2/1\nl 1 2/ 3//1\n").rows(), 3);
+        EXPECT_EQ(log.text, "");
+    }
+    for (const char* broken : {"l 1/12/2\n", "l 1/1 2/13/1 4/1\n", "l -1 -2 x\n", "l 3\n", "l\n"}) {
+        const LogCapture log;
+        const Array2i E = edges_of(broken + std::string("l -1 -2 -4\n"));
+        ASSERT_EQ(E.rows(), 2) << broken;
+        EXPECT_EQ(E(0, 0), 3) << broken;
+        EXPECT_EQ(E(1, 1), 0) << broken;
+        EXPECT_NE(log.text.find("test.obj:6: 'l' needs at least 2 vertices"), std::string::npos) << log.text;
+    }
+    const LogCapture log;
+    edges_of("l 1/12/2\nl 2/13/1\n" + std::string("l 1 2\n"));
+    EXPECT_NE(log.text.find("2 such lines in all"), std::string::npos) << log.text;
+    EXPECT_THROW(edges_of("l 1 2\nl 1/12/"), FormatError) << "cut off";
 }
 
 TEST(Obj, ReadsMaps) {

@@ -23,9 +23,12 @@ void fail_at_byte(const Source& source, const char* place, std::string_view mess
     throw FormatError(fmt::format("{}: byte {}: {}", source.path.string(), place - source.begin(), message));
 }
 
+std::string line_name(const Source& source, const char* place) {
+    return fmt::format("{}:{}", source.path.string(), 1 + std::count(source.begin(), place, '\n'));
+}
+
 void fail_at_line(const Source& source, const char* place, std::string_view message) {
-    const auto line = 1 + std::count(source.begin(), place, '\n');
-    throw FormatError(fmt::format("{}:{}: {}", source.path.string(), line, message));
+    throw FormatError(fmt::format("{}: {}", line_name(source, place), message));
 }
 
 void fail(const Source& source, std::string_view message) {

@@ -57,6 +57,9 @@ class TextSource {
     Source source_;
 };
 
+/// "PATH:LINE" of a place in the text.
+std::string line_name(const Source& source, const char* place);
+
 /// Throws FormatError "PATH: byte N: MESSAGE".
 [[noreturn]] void fail_at_byte(const Source& source, const char* place, std::string_view message);
 

@@ -18,6 +18,7 @@ struct MtlEntry {
     Material material;
     std::optional<Vec3> diffuse, emission;
     std::optional<float> roughness, metallic, exponent;
+    std::optional<float> dissolve, transparency;  ///< d, Tr
 };
 
 /// Whether all texels of a texture's channel are near 0 or 1, but for what JPEG makes of them.
@@ -30,6 +31,17 @@ bool is_binary(const Texture& texture) {
     return true;
 }
 
+/// VTK's exporter, which PyVista and ParaView use, writes the opacity as Tr.
+bool is_written_by_vtk(const Source& source) {
+    const char* const end = source.end();
+    for (const char* p = source.begin(); p != end; p = next_line(p, end)) {
+        const std::string text = ascii::to_lower(read_rest(p, end));
+        if (!text.empty() && text[0] != '#') return false;
+        if (text.find("visualization toolkit") != text.npos) return true;
+    }
+    return false;
+}
+
 /// An image with the options that stand before its name.
 struct MapLine {
     Texture texture;
@@ -39,7 +51,10 @@ struct MapLine {
 class MtlParser {
   public:
     MtlParser(const Source& source, TextureLoader& textures)
-        : source_(source), textures_(textures), end_(source.end()) {}
+        : source_(source),
+          textures_(textures),
+          end_(source.end()),
+          transparency_is_opacity_(is_written_by_vtk(source)) {}
 
     std::map<std::string, Material> parse() {
         for (p_ = source_.begin(); p_ != end_; p_ = next_line(p_, end_)) {
@@ -53,6 +68,7 @@ class MtlParser {
             }
         }
         finish();
+        warn_of_transparent();
         return std::move(materials_);
     }
 
@@ -74,13 +90,9 @@ class MtlParser {
         if (keyword == "pr") entry_->roughness = number();
         if (keyword == "pm") entry_->metallic = number();
         if (keyword == "ns") entry_->exponent = number();
-        if (keyword == "d") set_opacity(dissolve());
-        if (keyword == "tr") set_opacity(1 - number().value_or(0));
+        if (keyword == "d") entry_->dissolve = dissolve();
+        if (keyword == "tr") entry_->transparency = number();
         if (keyword == "illum") entry_->material.unlit = number() == 0.0f;
-    }
-
-    void set_opacity(std::optional<float> opacity) {
-        if (opacity) entry_->material.opacity = std::clamp(*opacity, 0.0f, 1.0f);
     }
 
     /// The next number; nothing when there is none or it is not finite.
@@ -202,9 +214,31 @@ class MtlParser {
         m.emissive = m.emissive_texture && emission.isZero() ? Vec3(1, 1, 1) : emission;
         m.metallic = std::clamp(entry_->metallic.value_or(m.metallic_texture ? 1.0f : 0.0f), 0.0f, 1.0f);
         m.roughness = std::clamp(roughness(), 0.0f, 1.0f);
+        m.opacity = std::clamp(opacity(), 0.0f, 1.0f);
         const bool is_masked = m.opacity_texture && m.opacity == 1 && is_binary(m.opacity_texture);
         if (m.opacity < 1 || m.opacity_texture) m.alpha_mode = is_masked ? AlphaMode::mask : AlphaMode::blend;
         materials_.try_emplace(m.name, m);
+    }
+
+    /// `d` counts wherever it stands. Nobody means a material that is not seen at all: `Tr 1` is the opacity
+    /// of MeshLab, OpenMVS and others.
+    float opacity() {
+        if (entry_->dissolve) return *entry_->dissolve;
+        const float transparency = entry_->transparency.value_or(0);
+        if (!entry_->transparency || !(transparency_is_opacity_ || transparency == 1))
+            return 1 - transparency;
+        if (!transparency_is_opacity_ && ++opaque_count_ == 1) first_opaque_ = entry_->material.name;
+        return transparency;
+    }
+
+    void warn_of_transparent() const {
+        if (opaque_count_ > 0)
+            log_warning(
+                fmt::format("{}: 'Tr 1' without 'd' is taken as opaque, as MeshLab, OpenMVS and "
+                            "mvs-texturing mean it, not "
+                            "as invisible: material '{}'{}",
+                            source_.path.string(), first_opaque_,
+                            opaque_count_ > 1 ? fmt::format(", {} in all", opaque_count_) : ""));
     }
 
     float roughness() const {
@@ -218,6 +252,9 @@ class MtlParser {
     TextureLoader& textures_;
     const char* p_ = nullptr;
     const char* end_;
+    const bool transparency_is_opacity_;
+    size_t opaque_count_ = 0;   ///< materials with 'Tr 1' that are opaque
+    std::string first_opaque_;  ///< the name of the first
     std::optional<MtlEntry> entry_;
     std::map<std::string, Material> materials_;
 };

@@ -13,8 +13,10 @@ namespace easypbr::io {
 /// Materials by name. Kd and Ke are linear Rec.709. Without Pr, the roughness is that of the Beckmann
 /// distribution nearest to the Phong exponent Ns (Walter et al. 2007, section 5.2): alpha = sqrt(2 / (Ns +
 /// 2)), roughness = sqrt(alpha). A map alone has the factor 1. `map_d` cuts out where the
-/// image is black and white and nothing else is transparent, else it blends. `illum 0` (constant colour) is
-/// unlit. Lines that are not understood are left out; maps that have no counterpart are reported to the log.
+/// image is black and white and nothing else is transparent, else it blends. Opacity is `d` wherever it is
+/// given; else 1 - Tr, but 1 for `Tr 1`, with a warning, and Tr in files whose first comment names VTK.
+/// `illum 0` (constant colour) is unlit. Lines that are not understood are left out; maps that have no
+/// counterpart are reported to the log.
 std::map<std::string, Material> read_mtl(const Source& source, TextureLoader& textures);
 
 }  // namespace easypbr::io

@@ -153,15 +153,35 @@ class ChunkParser {
                      fmt::format("an index expected, found '{}'", read_word(p, end_).substr(0, 40)));
     }
 
+    /// One that is broken is left out, as those of VTK, which has no blanks between corners with texture
+    /// coordinates: "l 1/12/23/3". At the end of the file it may have been cut off.
     void parse_line_element(const char* line) {
+        const size_t values = chunk_.edges.values.size(), relative = chunk_.edges.relative.size();
         size_t count = 0;
-        for (skip(); !at_line_end(); skip(), ++count) {
+        bool is_whole = true;
+        for (skip(); is_whole && !at_line_end(); skip(), ++count) {
             if (count > 1) repeat_last_edge_end();
-            add_index(line, obj_position, chunk_.edges);
-            while (!at_line_end() && !is_blank(*p_) && *p_ != '\\') ++p_;
+            is_whole = parse_line_corner(line);
         }
-        if (count < 2)
-            fail_at_line(source_, line, fmt::format("'l' has {} vertices, expected at least 2", count));
+        if (is_whole && count > 1) return;
+        skip_continued_lines();
+        if (p_ == source_.end())
+            fail_at_line(source_, line, "'l' needs at least 2 vertices, each v, v/t or v//n");
+        chunk_.edges.values.resize(values);
+        chunk_.edges.relative.resize(relative);
+        if (chunk_.broken_line_count++ == 0) chunk_.first_broken_line = line;
+    }
+
+    /// v, v/t or v//n. Of a corner the position counts; false: it is none.
+    bool parse_line_corner(const char* line) {
+        const char* p = p_;
+        if (int32_t index = 0; !read_integer(p, end_, index)) return false;
+        add_index(line, obj_position, chunk_.edges);
+        for (int slashes = 0; slashes < 2 && !at_corner_end() && *p_ == '/'; ++slashes) {
+            ++p_;
+            if (int32_t ignored = 0; read_integer(p_, end_, ignored)) break;
+        }
+        return at_corner_end();
     }
 
     void repeat_last_edge_end() {

@@ -37,6 +37,8 @@ struct ObjChunk {
     ObjIndices edges;                           ///< pairs of positions
     std::vector<std::pair<uint32_t, std::string>> materials;  ///< usemtl: number of faces before it, name
     std::vector<std::string> libraries;                       ///< mtllib
+    size_t broken_line_count = 0;                             ///< 'l' that are left out
+    const char* first_broken_line = nullptr;                  ///< in the source
 
     size_t vertex_count(ObjIndex kind) const {
         return kind == obj_position ? positions.size() / 3
@@ -54,8 +56,8 @@ struct ObjChunk {
     }
 };
 
-/// Throws FormatError with the line of what is not understood. `text` is a part of `source` that ends at a
-/// line's end; `offset` is subtracted from positions.
+/// Throws FormatError with the line of what is not understood, beside 'l', which are counted. `text` is a
+/// part of `source` that ends at a line's end; `offset` is subtracted from positions.
 ObjChunk parse_obj_chunk(const Source& source, std::string_view text, const Vec3d& offset);
 
 /// The offset of a file's positions (see scene/offset.h), from vertices spread over the text.

@@ -86,6 +86,7 @@ class ObjReader {
         join_vertices();
         join_faces();
         join_edges();
+        warn_of_broken_lines();
         join_materials();
         chunks_ = {};
         check();
@@ -180,6 +181,19 @@ class ObjReader {
             for (size_t k = 0; k < chunks_[i].face_sizes.size(); ++k)
                 faces_.first[face_begin_[i] + k + 1] = uint32_t(end += chunks_[i].face_sizes[k]);
         });
+    }
+
+    void warn_of_broken_lines() const {
+        size_t count = 0;
+        const char* first = nullptr;
+        for (const ObjChunk& chunk : chunks_) {
+            if (!first) first = chunk.first_broken_line;
+            count += chunk.broken_line_count;
+        }
+        if (count > 0)
+            log_warning(fmt::format("{}: 'l' needs at least 2 vertices, each v, v/t or v//n: left out{}",
+                                    line_name(source_, first),
+                                    count > 1 ? fmt::format(", {} such lines in all", count) : ""));
     }
 
     void join_edges() {
