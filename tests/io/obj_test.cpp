@@ -305,6 +305,85 @@ TEST(Obj, OpacityMapsBlendUnlessTheyAreBlackAndWhite) {
     EXPECT_EQ(mode_of({0, 255}, "d 0.5\n"), AlphaMode::blend) << "opacity multiplies the map";
 }
 
+/// An image of one row.
+Image row_of(int channels, std::initializer_list<uint8_t> values) {
+    Image image(int(values.size()) / channels, 1, channels, PixelType::u8);
+    std::ranges::copy(values, image.pixels<uint8_t>().begin());
+    return image;
+}
+
+TEST(Obj, OpacityMapsAreTheAlphaOfTheirImages) {
+    const TemporaryFolder folder;
+    io::save_image(row_of(4, {255, 0, 0, 255, 0, 255, 0, 0}), folder / "cut.png");
+    io::save_image(row_of(4, {255, 0, 0, 100, 0, 255, 0, 0}), folder / "clear.png");
+    io::save_image(row_of(4, {255, 0, 0, 255, 0, 255, 0, 255}), folder / "solid.png");
+    io::save_image(row_of(2, {255, 0, 0, 255}), folder / "grey_cut.png");
+    const auto channel_of = [&](const std::string& line) {
+        return read_material(line, folder).opacity_texture.channel;
+    };
+    EXPECT_EQ(channel_of("map_d cut.png\n"), 3);
+    EXPECT_EQ(*read_material("map_d cut.png\n", folder).alpha_mode, AlphaMode::mask);
+    EXPECT_EQ(*read_material("map_d clear.png\n", folder).alpha_mode, AlphaMode::blend);
+    EXPECT_EQ(channel_of("map_d grey_cut.png\n"), 1);
+    EXPECT_EQ(channel_of("map_d solid.png\n"), 0) << "alpha says nothing";
+    EXPECT_EQ(channel_of("map_d -imfchan r cut.png\n"), 0);
+    EXPECT_EQ(channel_of("map_d -imfchan m solid.png\n"), 3);
+    EXPECT_EQ(channel_of("map_d -imfchan m grey_cut.png\n"), 1);
+    EXPECT_EQ(channel_of("map_d -imfchan g grey_cut.png\n"), 0) << "grey stands for green";
+    EXPECT_EQ(read_material("map_Pr cut.png\n", folder).roughness_texture.channel, 0);
+}
+
+// The alpha of the base colour multiplies the opacity: 0.5 would become 0.25.
+TEST(Obj, TheAlphaOfTheBaseColorCountsOnce) {
+    const TemporaryFolder folder;
+    io::save_image(row_of(4, {255, 0, 0, 128, 0, 255, 0, 0}), folder / "c.png");
+    const Material one = read_material("map_Kd c.png\nmap_d c.png\n", folder);
+    EXPECT_TRUE(one.base_color_texture);
+    EXPECT_FALSE(one.opacity_texture);
+    EXPECT_EQ(*one.alpha_mode, AlphaMode::blend);
+    const Material scaled = read_material("map_Kd c.png\nmap_d -s 2 2 c.png\n", folder);
+    EXPECT_EQ(scaled.opacity_texture.channel, 3) << "another place of the image";
+    // Written as map_d, and read back.
+    MeshData mesh = read(square + "f 1 2 3\n");
+    mesh.materials = {one};
+    const LogCapture log;
+    io::save_mesh(Mesh(mesh), folder / "out.obj");
+    EXPECT_EQ(log.text.find("alpha_mode"), std::string::npos) << log.text;
+    const Material back = io::load_mesh(folder / "out.obj").snapshot()->materials.at(0);
+    EXPECT_EQ(*back.alpha_mode, AlphaMode::blend);
+    EXPECT_FALSE(back.opacity_texture);
+}
+
+// A red channel of an image with alpha is no alpha when it is read back.
+TEST(Obj, WritesTheChannelOfAnOpacity) {
+    const TemporaryFolder folder;
+    io::save_image(row_of(4, {255, 0, 0, 128, 0, 255, 0, 0}), folder / "c.png");
+    io::save_image(row_of(2, {255, 0, 0, 128}), folder / "g.png");
+    for (const auto& [line, channel] : std::vector<std::pair<std::string, int>>{
+             {"map_d -imfchan r c.png\n", 0}, {"map_d c.png\n", 3}, {"map_d g.png\n", 1}}) {
+        MeshData mesh = read(square + "f 1 2 3\n");
+        mesh.materials = {read_material(line, folder)};
+        EXPECT_EQ(mesh.materials[0].opacity_texture.channel, channel) << line;
+        io::save_mesh(Mesh(mesh), folder / "out.obj");
+        EXPECT_EQ(io::load_mesh(folder / "out.obj").snapshot()->materials.at(0).opacity_texture.channel,
+                  channel)
+            << line;
+    }
+}
+
+// 0.2126 * 200 + 0.7152 * 100 + 0.0722 * 50 = 117.65.
+TEST(Obj, TheLuminanceOfAnImageMayBeAskedFor) {
+    const TemporaryFolder folder;
+    io::save_image(row_of(3, {200, 100, 50}), folder / "c.png");
+    io::save_image(row_of(3, {200, 200, 200}), folder / "g.png");
+    const Texture colored = read_material("map_Pr -imfchan l c.png\n", folder).roughness_texture;
+    ASSERT_EQ(colored.image->channels(), 1);
+    EXPECT_EQ(*colored.image->at<uint8_t>(0, 0), 118);
+    EXPECT_EQ(colored.path, "") << "no file holds it";
+    const Texture grey = read_material("map_Pr -imfchan l g.png\n", folder).roughness_texture;
+    EXPECT_EQ(fs::path(grey.path).filename(), "g.png");
+}
+
 TEST(Obj, WarnsOfMissingLibrariesAndTextures) {
     const TemporaryFolder folder;
     std::vector<std::string> warnings;

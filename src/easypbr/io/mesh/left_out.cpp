@@ -42,8 +42,9 @@ std::vector<std::string> labels_and_scalars(const MeshData& mesh, bool of_faces_
     return names;
 }
 
-/// Whether OBJ and formats of coloured vertices say an alpha mode by an opacity alone.
-bool says_alpha_mode(const Material& material) {
+/// Whether OBJ and formats of coloured vertices say an alpha mode by an opacity alone, OBJ by its map too.
+bool says_alpha_mode(const Material& material, bool has_map) {
+    if (has_map && shows_alpha_of_color(material)) return true;
     const AlphaMode mode = material.alpha_mode.value_or(AlphaMode::opaque);
     if (!material.alpha_mode.value()) return true;
     if (mode == AlphaMode::opaque) return material.opacity == 1 && !material.opacity_texture;
@@ -53,7 +54,7 @@ bool says_alpha_mode(const Material& material) {
 
 /// The properties of a material that are not those of a new one, but for `double_sided`: closed surfaces look
 /// the same with either.
-std::vector<std::string> properties_of(const Material& material) {
+std::vector<std::string> properties_of(const Material& material, bool has_opacity_map) {
     const Material plain;
     std::vector<std::string> names;
     for (const MaterialColor& color : material_colors())
@@ -65,7 +66,7 @@ std::vector<std::string> properties_of(const Material& material) {
         if (given || !given.path.empty()) names.push_back(fmt::format("{}_texture", texture.name));
     }
     if (material.unlit) names.emplace_back("unlit");
-    if (!says_alpha_mode(material)) names.emplace_back("alpha_mode");
+    if (!says_alpha_mode(material, has_opacity_map)) names.emplace_back("alpha_mode");
     return names;
 }
 
@@ -73,7 +74,7 @@ std::vector<std::string> properties_of(const Material& material) {
 void add_materials(const MeshData& mesh, const Properties& kept, std::vector<std::string>& names) {
     Properties seen = kept;
     for (const Material& material : mesh.materials)
-        for (const std::string& name : properties_of(material))
+        for (const std::string& name : properties_of(material, kept.contains("opacity_texture")))
             if (seen.insert(name).second) names.push_back(fmt::format("material.{}", name));
 }
 

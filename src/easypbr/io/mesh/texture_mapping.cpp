@@ -78,6 +78,12 @@ const TextureMapping& ply_mapping() {
     return mapping;
 }
 
+bool shows_alpha_of_color(const Material& material) {
+    const Texture& color = material.base_color_texture;
+    return material.alpha_mode.value_or(AlphaMode::opaque) != AlphaMode::opaque && color &&
+           !material.opacity_texture && !is_fully_opaque(*color.image);
+}
+
 void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh) {
     if (mesh.UV.empty() || mesh.F.empty()) return;
     std::vector<Mat3> transforms;

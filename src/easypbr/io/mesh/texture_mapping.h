@@ -20,6 +20,9 @@ const TextureMapping& obj_mapping();
 /// PLY: base colours that repeat.
 const TextureMapping& ply_mapping();
 
+/// Whether the alpha of the base colour's texture shows and no texture of the opacity is beside it.
+bool shows_alpha_of_color(const Material& material);
+
 /// Where the textures of a material share a transform that the format does not have, the texture coordinates
 /// of the material's faces are transformed instead. All stay as they are where a vertex would need two.
 void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh);

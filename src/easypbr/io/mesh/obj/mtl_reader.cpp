@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/io/source/text_scanner.h"
 
 namespace easypbr::io {
@@ -31,6 +33,20 @@ bool is_binary(const Texture& texture) {
     return true;
 }
 
+/// Whether red, green and blue are the same in nearly all texels, but for what JPEG makes of them.
+bool is_grey(const Image& image) {
+    if (image.channels() < 3) return true;
+    const Image texels = to_u8(image);
+    size_t colored = 0;
+    for (int y = 0; y < texels.height(); ++y)
+        for (int x = 0; x < texels.width(); ++x) {
+            const uint8_t* const c = texels.at<uint8_t>(x, y);
+            const auto [least, most] = std::minmax({c[0], c[1], c[2]});
+            if (most - least > 16) ++colored;
+        }
+    return colored * 100 <= texels.pixel_count();
+}
+
 /// VTK's exporter, which PyVista and ParaView use, writes the opacity as Tr.
 bool is_written_by_vtk(const Source& source) {
     const char* const end = source.end();
@@ -42,9 +58,44 @@ bool is_written_by_vtk(const Source& source) {
     return false;
 }
 
+/// The channel of an image's alpha; none without one, or where nothing is transparent.
+std::optional<int> alpha_channel(const Image& image) {
+    if (image.channels() % 2 != 0 || is_fully_opaque(image)) return {};
+    return image.channels() - 1;
+}
+
+/// Luminance of texels as they are stored (ITU-R BT.709).
+template <class T>
+void fill_luminance(const Image& from, Image& out) {
+    for (int y = 0; y < from.height(); ++y)
+        for (int x = 0; x < from.width(); ++x) {
+            const T* const c = from.at<T>(x, y);
+            const float value = 0.2126f * float(c[0]) + 0.7152f * float(c[1]) + 0.0722f * float(c[2]);
+            *out.at<T>(x, y) = T(std::is_integral_v<T> ? value + 0.5f : value);
+        }
+}
+
+std::shared_ptr<const Image> luminance_of(const Image& image) {
+    charge_memory(image.pixel_count() * size_of(image.type()), "the luminance of an image");
+    auto out = std::make_shared<Image>(image.width(), image.height(), 1, image.type());
+    if (image.type() == PixelType::u8) fill_luminance<uint8_t>(image, *out);
+    if (image.type() == PixelType::u16) fill_luminance<uint16_t>(image, *out);
+    if (image.type() == PixelType::f32) fill_luminance<float>(image, *out);
+    return out;
+}
+
+/// Whether `opacity` is the alpha of `color`.
+bool is_alpha_of(const Texture& color, const Texture& opacity) {
+    if (!color || !opacity) return false;
+    Texture alpha = color;
+    alpha.channel = color.image->channels() - 1;
+    return color.image->channels() % 2 == 0 && alpha == opacity;
+}
+
 /// An image with the options that stand before its name.
 struct MapLine {
     Texture texture;
+    char channel = 0;  ///< of -imfchan; 0: not given
     float bump = 1;
 };
 
@@ -127,13 +178,21 @@ class MtlParser {
         } else if (keyword == "map_ke") {
             material.emissive_texture = map_line().texture;
         } else if (keyword == "map_d") {
-            material.opacity_texture = map_line().texture;
+            parse_opacity_map();
         } else if (keyword == "norm" || keyword == "bump" || keyword == "map_bump") {
             parse_normal_map(keyword);
         } else if (keyword != "map_ka") {
             log_warning(
                 fmt::format("{}: '{}' is not supported and left out", source_.path.string(), keyword));
         }
+    }
+
+    /// Images with alpha are given for it; of others the luminance is meant.
+    void parse_opacity_map() {
+        MapLine map = map_line();
+        if (map.texture && map.channel == 0)
+            map.texture.channel = alpha_channel(*map.texture.image).value_or(0);
+        entry_->material.opacity_texture = map.texture;
     }
 
     /// Exporters write normal maps under the keywords of height maps as well; a height map is grey.
@@ -162,7 +221,6 @@ class MtlParser {
         MapLine map;
         Eigen::Vector2f scale(1, 1), offset(0, 0);
         bool clamp = false;
-        int channel = 0;
         for (p_ = skip_blanks(p_, end_); p_ != end_ && *p_ == '-'; p_ = skip_blanks(p_, end_)) {
             const std::string option = ascii::to_lower(read_word(p_, end_));
             if (option == "-s")
@@ -176,13 +234,13 @@ class MtlParser {
             else if (option == "-clamp")
                 clamp = read_word(p_, end_) == "on";
             else if (option == "-imfchan")
-                channel = channel_index(read_word(p_, end_));
+                map.channel = channel_letter(read_word(p_, end_));
             else
                 read_word(p_, end_);
         }
         map.texture = textures_.load(std::string(read_rest(p_, end_)));
         if (!map.texture) return map;
-        map.texture.channel = std::min(channel, map.texture.image->channels() - 1);
+        take_channel(map.channel, map.texture);
         if (clamp) map.texture.wrap_u = map.texture.wrap_v = Wrap::clamp;
         map.texture.uv_transform << scale.x(), 0, offset.x(), 0, scale.y(), offset.y(), 0, 0, 1;
         return map;
@@ -199,8 +257,27 @@ class MtlParser {
         return value;
     }
 
-    static int channel_index(std::string_view name) {
-        return name == "g" ? 1 : name == "b" ? 2 : name == "m" ? 3 : 0;
+    static char channel_letter(std::string_view name) {
+        return name.size() == 1 ? ascii::to_lower(name)[0] : '\0';
+    }
+
+    /// r, g, b, m (matte: alpha) or l (luminance). The first where an image has no such channel.
+    void take_channel(char letter, Texture& texture) {
+        const int channels = texture.image->channels();
+        if (letter == 'g' && channels >= 3) texture.channel = 1;
+        if (letter == 'b' && channels >= 3) texture.channel = 2;
+        if (letter == 'm' && channels % 2 == 0) texture.channel = channels - 1;
+        if (letter == 'l' && channels >= 3) take_luminance(texture);
+    }
+
+    /// No file holds the luminance of a coloured image.
+    void take_luminance(Texture& texture) {
+        std::shared_ptr<const Image>& luminance = luminances_[texture.image];
+        if (!luminance) luminance = is_grey(*texture.image) ? texture.image : luminance_of(*texture.image);
+        if (luminance == texture.image) return;
+        texture.image = luminance;
+        texture.path.clear();
+        texture.file_state.reset();
     }
 
     void finish() {
@@ -217,6 +294,8 @@ class MtlParser {
         m.opacity = std::clamp(opacity(), 0.0f, 1.0f);
         const bool is_masked = m.opacity_texture && m.opacity == 1 && is_binary(m.opacity_texture);
         if (m.opacity < 1 || m.opacity_texture) m.alpha_mode = is_masked ? AlphaMode::mask : AlphaMode::blend;
+        // The alpha of base colours multiplies the opacity, so that it would count twice.
+        if (is_alpha_of(m.base_color_texture, m.opacity_texture)) m.opacity_texture = {};
         materials_.try_emplace(m.name, m);
     }
 
@@ -257,6 +336,7 @@ class MtlParser {
     std::string first_opaque_;  ///< the name of the first
     std::optional<MtlEntry> entry_;
     std::map<std::string, Material> materials_;
+    std::map<std::shared_ptr<const Image>, std::shared_ptr<const Image>> luminances_;  ///< of images
 };
 
 }  // namespace

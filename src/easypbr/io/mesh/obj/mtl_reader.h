@@ -15,7 +15,9 @@ namespace easypbr::io {
 /// 2)), roughness = sqrt(alpha). A map alone has the factor 1. `map_d` cuts out where the
 /// image is black and white and nothing else is transparent, else it blends. Opacity is `d` wherever it is
 /// given; else 1 - Tr, but 1 for `Tr 1`, with a warning, and Tr in files whose first comment names VTK.
-/// `illum 0` (constant colour) is unlit. Lines that are not understood are left out; maps that have no
+/// `map_d` is the alpha of an image that has one, unless it is 1 everywhere, else its first channel; where it
+/// is the alpha of the base colour's texture there is no texture beside that. `illum 0` (constant colour) is
+/// unlit. Lines that are not understood are left out; maps that have no
 /// counterpart are reported to the log.
 std::map<std::string, Material> read_mtl(const Source& source, TextureLoader& textures);
 

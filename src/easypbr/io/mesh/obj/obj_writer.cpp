@@ -163,9 +163,17 @@ class MtlWriter {
         map("map_Ke", "emissive", m.emissive_texture);
         map("map_Pr", "roughness", m.roughness_texture);
         map("map_Pm", "metallic", m.metallic_texture);
-        map("map_d", "opacity", m.opacity_texture);
+        map("map_d", opacity_kind, opacity_texture(m));
         map("norm", "normal", m.normal_texture,
             m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
+    }
+
+    /// Readers take no alpha out of base colours by themselves.
+    static Texture opacity_texture(const Material& m) {
+        if (!shows_alpha_of_color(m)) return m.opacity_texture;
+        Texture alpha = m.base_color_texture;
+        alpha.channel = alpha.image->channels() - 1;
+        return alpha;
     }
 
     template <class... Values>
@@ -173,10 +181,17 @@ class MtlWriter {
         fmt::format_to(std::back_inserter(body_), format, std::forward<Values>(values)...);
     }
 
-    void map(const char* keyword, const char* kind, const Texture& texture, const std::string& option = {}) {
+    static constexpr std::string_view opacity_kind = "opacity";
+
+    void map(const char* keyword, std::string_view kind, const Texture& texture,
+             const std::string& option = {}) {
         if (texture.path.empty() && !texture.image) return;
         body_ += keyword + option;
-        if (texture.channel > 0) line(" -imfchan {}", "rgbm"[texture.channel]);
+        // Readers take the alpha of an image for the opacity.
+        const bool has_alpha = texture.image && texture.image->channels() % 2 == 0;
+        const bool is_alpha = has_alpha && texture.channel == texture.image->channels() - 1;
+        if (texture.channel > 0 || (has_alpha && kind == opacity_kind))
+            line(" -imfchan {}", is_alpha ? 'm' : "rgbm"[texture.channel]);
         if (texture.wrap_u == Wrap::clamp && texture.wrap_v == Wrap::clamp) body_ += " -clamp on";
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0) && obj_mapping().has_transform(M))
@@ -189,7 +204,7 @@ class MtlWriter {
     }
 
     /// The name of an image made in memory or embedded in a GLB: the same for all uses.
-    const std::string& name_of(const std::shared_ptr<const Image>& image, const char* kind) {
+    const std::string& name_of(const std::shared_ptr<const Image>& image, std::string_view kind) {
         std::string& name = names_[image];
         for (int i = 1; name.empty(); ++i) {
             std::string free = fmt::format("{}_{}{}.png", stem_, kind, i == 1 ? "" : fmt::format("_{}", i));
