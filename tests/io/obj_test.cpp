@@ -38,6 +38,13 @@ Material read_material(const std::string& lines, const TemporaryFolder& folder) 
     return mesh.materials.at(0);
 }
 
+/// An image of one row.
+Image row_of(int channels, std::initializer_list<uint8_t> values) {
+    Image image(int(values.size()) / channels, 1, channels, PixelType::u8);
+    std::ranges::copy(values, image.pixels<uint8_t>().begin());
+    return image;
+}
+
 }  // namespace
 
 TEST(Obj, ReadsPolygonsNegativeIndicesContinuationsAndWindowsLineEnds) {
@@ -230,7 +237,8 @@ TEST(Obj, LeavesOutBrokenLines) {
 TEST(Obj, ReadsMaps) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "maps");
-    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "maps/a b.png");
+    // The normal that is not tilted.
+    io::save_image(row_of(3, {128, 128, 255}), folder / "maps/a b.png");
     io::save_image(Image(2, 2, 1, PixelType::u8), folder / "grey.png");
     const Material m = read_material(
         "Kd 0 0 0\nmap_Kd -s 2 3 1 -o 0.5 -clamp on maps\\a b.png\nmap_Pr grey.png\n"
@@ -251,6 +259,24 @@ TEST(Obj, ReadsMaps) {
     EXPECT_EQ(m.base_color_texture.image, m.normal_texture.image) << "an image is read once";
     EXPECT_TRUE(read_material("bump maps/a b.png\n", folder).normal_texture);
     EXPECT_FALSE(read_material("bump grey.png\n", folder).normal_texture) << "a height map is no normal map";
+}
+
+TEST(Obj, GreyBumpMapsAreHeightMapsHoweverTheyAreStored) {
+    const TemporaryFolder folder;
+    // 1 of 100 texels may be a stray one.
+    Image heights(100, 1, 3, PixelType::u8);
+    std::ranges::fill(heights.pixels<uint8_t>(), uint8_t(90));
+    heights.at<uint8_t>(7, 0)[2] = 250;
+    io::save_image(heights, folder / "h.png");
+    io::save_image(row_of(4, {10, 10, 10, 255, 200, 200, 200, 255}), folder / "h_alpha.png");
+    io::save_image(row_of(3, {128, 128, 255, 218, 218, 218}), folder / "n.png");
+    for (const char* line : {"bump h.png\n", "map_Bump -bm 0.5 h.png\n", "map_bump h_alpha.png\n"}) {
+        const LogCapture log;
+        EXPECT_FALSE(read_material(line, folder).normal_texture) << line;
+        EXPECT_NE(log.text.find("height maps are not supported"), std::string::npos) << log.text;
+    }
+    EXPECT_TRUE(read_material("bump n.png\n", folder).normal_texture);
+    EXPECT_TRUE(read_material("norm h.png\n", folder).normal_texture);
 }
 
 TEST(Obj, NamesMayBeginLikeNumbersStandInQuotesAndHaveComments) {
@@ -303,13 +329,6 @@ TEST(Obj, OpacityMapsBlendUnlessTheyAreBlackAndWhite) {
     EXPECT_EQ(mode_of({100, 100}), AlphaMode::blend);
     EXPECT_EQ(mode_of({0, 255, 128}), AlphaMode::blend);
     EXPECT_EQ(mode_of({0, 255}, "d 0.5\n"), AlphaMode::blend) << "opacity multiplies the map";
-}
-
-/// An image of one row.
-Image row_of(int channels, std::initializer_list<uint8_t> values) {
-    Image image(int(values.size()) / channels, 1, channels, PixelType::u8);
-    std::ranges::copy(values, image.pixels<uint8_t>().begin());
-    return image;
 }
 
 TEST(Obj, OpacityMapsAreTheAlphaOfTheirImages) {

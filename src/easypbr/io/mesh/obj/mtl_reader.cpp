@@ -199,7 +199,7 @@ class MtlParser {
     void parse_normal_map(const std::string& keyword) {
         const MapLine map = map_line();
         if (!map.texture) return;
-        if (keyword != "norm" && map.texture.image->channels() < 3) {
+        if (keyword != "norm" && is_grey(*map.texture.image)) {
             log_warning(fmt::format("{}: height maps are not supported, '{}' is left out",
                                     source_.path.string(), map.texture.path));
             return;
