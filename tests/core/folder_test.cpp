@@ -52,6 +52,16 @@ TEST_F(FolderTest, OpensWhatLiesBeneath) {
     }
 }
 
+TEST_F(FolderTest, NothingOutsideIsThere) {
+    EXPECT_TRUE(exists_in_scope(all_ / "secret"));
+    EXPECT_FALSE(exists_in_scope(in_ / "none"));
+    const Folder folder(in_);
+    const FolderScope scope(&folder);
+    for (const char* name : {"a", "deep/b", "deep"}) EXPECT_TRUE(exists_in_scope(in_ / name)) << name;
+    EXPECT_FALSE(exists_in_scope(in_ / "none"));
+    for (const fs::path& name : outside) EXPECT_FALSE(exists_in_scope(in_ / name)) << name;
+}
+
 // No link is followed, be it one that stays beneath.
 TEST_F(FolderTest, OpensInStepsWithoutFollowingLinks) {
     const Folder folder(in_);

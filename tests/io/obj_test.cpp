@@ -5,6 +5,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/folder.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -316,6 +317,72 @@ TEST(Obj, FindsMaterialsWhateverStandsAroundTheirNames) {
 }
 
 // An opacity of 100/255 is neither there nor not; what a JPEG file makes of black and white is.
+TEST(Obj, LinesMayNameSeveralLibrariesAndFoldersOfAnotherComputer) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "sub");
+    write_file(folder / "a.mtl", "newmtl a\nKd 1 0 0\n");
+    write_file(folder / "b.mtl", "newmtl b\nKd 0 0 1\n");
+    write_file(folder / "my a.mtl", "newmtl a\nKd 0 1 0\n");
+    write_file(folder / "sub/c.mtl", "newmtl a\nKd 1 1 0\n");
+    const auto color_of = [&](const std::string& library, const std::string& name) {
+        return read("mtllib " + library + "\n" + square + "usemtl " + name + "\nf 1 2 3\n",
+                    folder / "test.obj")
+            .materials.at(0)
+            .base_color;
+    };
+    const LogCapture log;
+    for (const char* name : {"a.mtl b.mtl", "b.mtl\t a.mtl # of both", "./a.mtl b.mtl"}) {
+        EXPECT_EQ(color_of(name, "a"), Vec3(1, 0, 0)) << name;
+        EXPECT_EQ(color_of(name, "b"), Vec3(0, 0, 1)) << name;
+    }
+    for (const char* name : {".\\a.mtl", "C:\\models\\a.mtl", "/home/nobody/models/a.mtl", "models/a.mtl"})
+        EXPECT_EQ(color_of(name, "a"), Vec3(1, 0, 0)) << name;
+    EXPECT_EQ(color_of("my a.mtl", "a"), Vec3(0, 1, 0)) << "the whole line is a file";
+    EXPECT_EQ(color_of("sub\\c.mtl", "a"), Vec3(1, 1, 0));
+    EXPECT_EQ(log.text, "");
+    EXPECT_EQ(color_of("a.mtl gone.mtl", "a"), Vec3(1, 0, 0));
+    EXPECT_NE(log.text.find("gone.mtl"), std::string::npos) << log.text;
+}
+
+// A name that leads out of a folder is that of a file beside the OBJ; what is outside is as if it were
+// missing.
+TEST(Obj, LibrariesAndImagesOutsideOfAFolderAreNotLookedFor) {
+    const TemporaryFolder all;
+    fs::create_directories(all / "in");
+    for (const char* name : {"m.mtl", "secret.mtl"}) write_file(all / name, "newmtl a\nKd 1 0 0\n");
+    write_file(all / "in/m.mtl", "newmtl a\nKd 0 1 0\nmap_Ke ../c.png\n");
+    for (const char* name : {"c.png", "in/c.png"}) io::save_image(Image(1, 1, 3, PixelType::u8), all / name);
+    const Folder folder(all / "in");
+    const FolderScope scope(&folder);
+    const auto material_of = [&](const std::string& library) {
+        return read("mtllib " + library + "\n" + square + "usemtl a\nf 1 2 3\n", all / "in/test.obj")
+            .materials.at(0);
+    };
+    const Material inside = material_of("../m.mtl");
+    EXPECT_EQ(inside.base_color, Vec3(0, 1, 0));
+    EXPECT_EQ(fs::path(inside.emissive_texture.path), all / "in/c.png");
+    const auto warning_of = [&](const std::string& library) {
+        const LogCapture log;
+        EXPECT_EQ(material_of(library).base_color, Material().base_color);
+        return log.text;
+    };
+    for (const char* name : {"../secret.mtl", "../gone.mtl"})
+        EXPECT_NE(warning_of(name).find("lies outside"), std::string::npos) << name;
+}
+
+// Files of both are there: those of the MTL's folder are meant.
+TEST(Obj, ImagesAreThoseOfTheFolderOfTheMtl) {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "sub");
+    for (const char* name : {"c.png", "sub/c.png", "d.png"})
+        io::save_image(Image(1, 1, 3, PixelType::u8), folder / name);
+    write_file(folder / "sub/m.mtl", "newmtl a\nmap_Kd c.png\nmap_Ke d.png\n");
+    const Material material =
+        read("mtllib sub/m.mtl\n" + square + "usemtl a\nf 1 2 3\n", folder / "test.obj").materials.at(0);
+    EXPECT_EQ(fs::path(material.base_color_texture.path), folder / "sub/c.png");
+    EXPECT_EQ(fs::path(material.emissive_texture.path), folder / "d.png");
+}
+
 TEST(Obj, OpacityMapsBlendUnlessTheyAreBlackAndWhite) {
     const TemporaryFolder folder;
     const auto mode_of = [&](std::initializer_list<uint8_t> texels, const std::string& lines = "") {

@@ -46,8 +46,17 @@ TEST(OpenedParts, OfObjAreMaterialsAndImages) {
     write_file(folder / "mats/a.mtl", "newmtl a\nmap_Kd red.png\nmap_Ke none.png\n");
     const std::string blank(size_t(16) << 20, '\n');
     write_file(folder / "a.obj", "mtllib gone.mtl\n" + blank + "mtllib mats/a.mtl\nusemtl a\n" + triangle);
+    EXPECT_EQ(read_files(folder, "a.obj"), (std::set<std::string>{"a.obj", "gone.mtl", "mats/a.mtl",
+                                                                  "mats/none.png", "none.png", "red.png"}));
+}
+
+// "./m.mtl" is "m.mtl", whose folder is that of the OBJ; each of several libraries may come later.
+TEST(OpenedParts, OfObjAreAllLibrariesOfALine) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl", "newmtl m\nmap_Kd none.png\n");
+    write_file(folder / "a.obj", std::string("mtllib ./m.mtl n.mtl\nmtllib g.mtl h.mtl\n") + triangle);
     EXPECT_EQ(read_files(folder, "a.obj"),
-              (std::set<std::string>{"a.obj", "gone.mtl", "mats/a.mtl", "none.png", "red.png"}));
+              (std::set<std::string>{"a.obj", "g.mtl", "h.mtl", "m.mtl", "n.mtl", "none.png"}));
 }
 
 // Images are decoded on all cores.

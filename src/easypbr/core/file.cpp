@@ -92,6 +92,11 @@ void wait_for_input(int descriptor) {
 
 }  // namespace
 
+bool exists_in_scope(const fs::path& path) {
+    std::error_code ignored;
+    return FolderScope::current() ? open_in_scope(path, O_PATH).get() >= 0 : fs::exists(path, ignored);
+}
+
 Descriptor::~Descriptor() {
     if (value_ >= 0) ::close(value_);
 }

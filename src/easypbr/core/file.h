@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "easypbr/core/image.h"
 #include "easypbr/core/guarded_map.h"
+#include "easypbr/core/image.h"
 
 namespace easypbr {
 
@@ -99,6 +99,10 @@ class FileBytes {
     const std::byte* data_ = nullptr;
     size_t size_ = 0;
 };
+
+/// Whether there is something at `path`. Nothing outside of the folder of the thread's FolderScope is looked
+/// at, and nothing is there.
+bool exists_in_scope(const fs::path& path);
 
 /// Throws FileError unless the file can be opened for reading and is a regular one.
 void check_readable(const fs::path& path);

@@ -49,21 +49,51 @@ std::string path_from_folder(const std::string& image_path, const fs::path& fold
     return relative.empty() ? image_path : relative.string();
 }
 
-fs::path TextureLoader::find(const std::string& name) const {
-    // Files made on Windows separate folders by backslashes.
-    std::string separated = name;
-    std::replace(separated.begin(), separated.end(), '\\', '/');
-    std::error_code ignored;
-    for (const std::string& given : {name, separated})
-        for (const fs::path& path : {folder_ / given, folder_ / fs::path(given).filename()})
-            if (fs::exists(path, ignored)) return path;
-    const std::string plain(without_comment(name));
-    return plain == name ? folder_ / separated : find(plain);
+namespace {
+
+/// Files made on Windows separate folders by backslashes.
+std::string with_slashes(std::string name) {
+    std::ranges::replace(name, '\\', '/');
+    return name;
 }
 
-Texture TextureLoader::load(const std::string& name) {
-    const fs::path path = find(name);
+/// "./a" is "a": the folder of the file is that which was given.
+std::string without_dot(std::string name) {
+    while (name.starts_with("./")) name.erase(0, 2);
+    return name;
+}
+
+/// Whoever watches the files learns of one that is missing.
+void note_missing(const fs::path& path) {
+    try {
+        const InputFile missing(path);
+    } catch (const FileError&) {
+    }
+}
+
+}  // namespace
+
+std::optional<fs::path> find_named_file(const std::vector<fs::path>& folders, const std::string& name) {
+    const std::string separated = without_dot(with_slashes(name));
+    for (const fs::path& given :
+         {fs::path(without_dot(name)), fs::path(separated), fs::path(separated).filename()})
+        for (const fs::path& folder : folders)
+            if (exists_in_scope(folder / given)) return folder / given;
+    const std::string plain(without_comment(name));
+    return plain == name ? std::nullopt : find_named_file(folders, plain);
+}
+
+fs::path place_of_named_file(const fs::path& folder, const std::string& name) {
+    return folder / without_dot(with_slashes(std::string(without_comment(name))));
+}
+
+Texture TextureLoader::load(const std::string& name, const fs::path& first) {
+    std::vector<fs::path> folders{first};
+    if (first != folder_) folders.push_back(folder_);
+    const std::optional<fs::path> found = find_named_file(folders, name);
+    const fs::path path = found ? *found : place_of_named_file(first, name);
     if (const auto known = textures_.find(path.string()); known != textures_.end()) return known->second;
+    if (!found && folders.size() > 1) note_missing(place_of_named_file(folder_, name));
     Texture texture;
     try {
         texture = load_texture(path);

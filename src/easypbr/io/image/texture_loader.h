@@ -3,7 +3,9 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "easypbr/core/file.h"
 #include "easypbr/core/image.h"
@@ -15,6 +17,14 @@ namespace easypbr::io {
 std::string_view unquoted(std::string_view name);
 /// The same, first without a comment: '#' behind a blank and all that follows.
 std::string_view without_comment(std::string_view name);
+
+/// The file that is named in a text: in the first of the folders that has it under its path, else under its
+/// bare name; backslashes may separate folders, and where there is no such file, without_comment() is tried.
+/// None: it is missing. Nothing outside of the folder of a FolderScope is found.
+std::optional<fs::path> find_named_file(const std::vector<fs::path>& folders, const std::string& name);
+
+/// Where such a file would be in a folder.
+fs::path place_of_named_file(const fs::path& folder, const std::string& name);
 
 /// The image in a file as a texture with an absolute path. Throws FileError, FormatError; messages name the
 /// path as it was given.
@@ -33,14 +43,13 @@ class TextureLoader {
     /// `mesh_file`: names are relative to its folder.
     explicit TextureLoader(const fs::path& mesh_file) : folder_(mesh_file.parent_path()) {}
 
-    /// A texture with the named image, found under its path or, failing that, beside the mesh file under its
-    /// bare name; where there is no such file, without_comment() is tried. Empty, with a warning in the log,
-    /// when it is missing or damaged.
-    Texture load(const std::string& name);
+    /// A texture with the named image, as find_named_file() finds it in the mesh file's folder. Empty, with a
+    /// warning in the log, when it is missing or damaged.
+    Texture load(const std::string& name) { return load(name, folder_); }
+    /// The same where a file in `first` has the name: that folder comes before the mesh file's.
+    Texture load(const std::string& name, const fs::path& first);
 
   private:
-    fs::path find(const std::string& name) const;
-
     fs::path folder_;
     std::map<std::string, Texture> textures_;  ///< by path
 };

@@ -238,7 +238,7 @@ class MtlParser {
             else
                 read_word(p_, end_);
         }
-        map.texture = textures_.load(std::string(read_rest(p_, end_)));
+        map.texture = textures_.load(std::string(read_rest(p_, end_)), source_.path.parent_path());
         if (!map.texture) return map;
         take_channel(map.channel, map.texture);
         if (clamp) map.texture.wrap_u = map.texture.wrap_v = Wrap::clamp;

@@ -19,6 +19,7 @@ namespace easypbr::io {
 /// is the alpha of the base colour's texture there is no texture beside that. `illum 0` (constant colour) is
 /// unlit. Lines that are not understood are left out; maps that have no
 /// counterpart are reported to the log.
+/// Images are looked for in the folder of the source before that of the textures.
 std::map<std::string, Material> read_mtl(const Source& source, TextureLoader& textures);
 
 }  // namespace easypbr::io

@@ -240,30 +240,47 @@ class ObjReader {
         return material;
     }
 
-    fs::path path_of_library(const std::string& name) const {
-        std::error_code ignored;
-        const fs::path path = source_.path.parent_path() / name;
-        return fs::exists(path, ignored) ? path : source_.path.parent_path() / without_comment(name);
+    /// The files of a line 'mtllib': all of it is one name, or there are several between blanks.
+    std::vector<fs::path> libraries_of(const std::string& line) const {
+        const fs::path folder = source_.path.parent_path();
+        if (const auto path = find_named_file({folder}, line)) return {*path};
+        std::vector<fs::path> paths;
+        bool are_several = false, are_mtl = true;
+        const std::string_view names = without_comment(line);
+        const char* p = names.data();
+        const char* const end = p + names.size();
+        for (std::string name(read_word(p, end)); !name.empty(); name = read_word(p, end)) {
+            const auto path = find_named_file({folder}, name);
+            are_several = are_several || path;
+            are_mtl = are_mtl && extension_of(name) == "mtl";
+            paths.push_back(path ? *path : place_of_named_file(folder, name));
+        }
+        if (are_several || are_mtl) return paths;
+        return {place_of_named_file(folder, line)};
     }
 
     std::map<std::string, Material> load_libraries() const {
         std::map<std::string, Material> library;
         TextureLoader textures(source_.path);
-        std::set<std::string> read;
-        for (const ObjChunk& chunk : chunks_) {
-            for (const std::string& name : chunk.libraries) {
-                if (!read.insert(name).second) continue;
-                try {
-                    const fs::path path = path_of_library(name);
-                    const FileBytes file(path);
-                    library.merge(read_mtl(Source(file, path), textures));
-                } catch (const Error& error) {
-                    log_warning(
-                        fmt::format("{}: materials left out: {}", source_.path.string(), error.what()));
-                }
+        std::set<std::string> lines;
+        std::set<fs::path> read;
+        for (const ObjChunk& chunk : chunks_)
+            for (const std::string& line : chunk.libraries) {
+                if (!lines.insert(line).second) continue;
+                for (const fs::path& path : libraries_of(line))
+                    if (read.insert(path).second) load_library(path, textures, library);
             }
-        }
         return library;
+    }
+
+    void load_library(const fs::path& path, TextureLoader& textures,
+                      std::map<std::string, Material>& library) const {
+        try {
+            const FileBytes file(path);
+            library.merge(read_mtl(Source(file, path), textures));
+        } catch (const Error& error) {
+            log_warning(fmt::format("{}: materials left out: {}", source_.path.string(), error.what()));
+        }
     }
 
     void check() {
