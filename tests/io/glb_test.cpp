@@ -196,6 +196,93 @@ TEST(Glb, MergesMetallicRoughnessAndOpacity) {
     EXPECT_EQ(color[3], 90);
 }
 
+/// An image of 8 bits with one channel, row by row.
+std::shared_ptr<const Image> grey_image(int width, std::initializer_list<uint8_t> texels) {
+    auto image = std::make_shared<Image>(width, int(texels.size()) / width, 1, PixelType::u8);
+    std::ranges::copy(texels, image->pixels<uint8_t>().begin());
+    return image;
+}
+
+std::vector<int> texels_of(const Texture& texture, int channel) {
+    std::vector<int> values;
+    for (int y = 0; y < texture.image->height(); ++y)
+        for (int x = 0; x < texture.image->width(); ++x)
+            values.push_back(texture.image->at<uint8_t>(x, y)[channel]);
+    return values;
+}
+
+/// The material that is read back, and no warning or one with `warning`.
+Material saved_material(const Material& material, const std::string& warning = "") {
+    MeshData data = square();
+    data.materials = {material};
+    const TemporaryFolder folder;
+    const LogCapture log;
+    Mesh(data).save(folder / "a.glb");
+    if (warning.empty()) {
+        EXPECT_EQ(log.text, "");
+    } else {
+        EXPECT_NE(log.text.find(warning), std::string::npos) << log.text;
+    }
+    return first_child(io::load_gltf(folder / "a.glb").mesh).materials.at(0);
+}
+
+// The tile of the one texture is that of the larger scale; the other repeats in it.
+TEST(Glb, MergesTexturesWhoseTransformsFitInOneTile) {
+    Material material;
+    material.base_color_texture.image = grey_image(2, {10, 20});
+    material.opacity_texture.image = grey_image(2, {30, 40});
+    material.opacity_texture.uv_transform(0, 0) = 2;
+    material.alpha_mode = AlphaMode::blend;
+    const Texture finer = saved_material(material).base_color_texture;
+    EXPECT_EQ(texels_of(finer, 0), (std::vector<int>{10, 10, 20, 20}));
+    EXPECT_EQ(texels_of(finer, 3), (std::vector<int>{30, 40, 30, 40}));
+    EXPECT_EQ(finer.uv_transform, Mat3::Identity());
+    std::swap(material.base_color_texture.uv_transform, material.opacity_texture.uv_transform);
+    const Texture coarser = saved_material(material).base_color_texture;
+    EXPECT_EQ(texels_of(coarser, 0), (std::vector<int>{10, 20, 10, 20}));
+    EXPECT_EQ(texels_of(coarser, 3), (std::vector<int>{30, 30, 40, 40}));
+    EXPECT_EQ(coarser.uv_transform, Mat3::Identity());
+}
+
+// v goes up: at v = 0.75 of the upper row, an offset of 0.5 gives 1.25, which is the lower row.
+TEST(Glb, MergesTexturesWhoseOffsetsDiffer) {
+    Material material;
+    material.metallic_texture.image = grey_image(1, {50, 60});
+    material.roughness_texture.image = grey_image(1, {70, 80});
+    material.roughness_texture.uv_transform(1, 2) = 0.5f;
+    const Material read = saved_material(material);
+    EXPECT_EQ(texels_of(read.metallic_texture, 2), (std::vector<int>{50, 60}));
+    EXPECT_EQ(texels_of(read.roughness_texture, 1), (std::vector<int>{80, 70}));
+    // One image for both is no texture for both.
+    material.metallic_texture.image = material.roughness_texture.image = flat_image(2, {1, 2, 3});
+    material.metallic_texture.channel = 2, material.roughness_texture.channel = 1;
+    material.roughness_texture.uv_transform(0, 0) = 0.3f;
+    saved_material(material, "roughness_texture");
+}
+
+TEST(Glb, NamesMappingsThatOneTextureCannotHave) {
+    Material material;
+    material.name = "wall";
+    material.base_color_texture.image = grey_image(2, {10, 20});
+    material.opacity_texture.image = grey_image(2, {30, 40});
+    material.alpha_mode = AlphaMode::blend;
+    const std::string warning =
+        "transform and wraps of opacity_texture of material 'wall' beside those of base_color_texture";
+    material.opacity_texture.uv_transform(0, 0) = 1.5f;
+    EXPECT_EQ(texels_of(saved_material(material, warning).base_color_texture, 3), (std::vector<int>{30, 40}));
+    material.opacity_texture.uv_transform(0, 0) = 2;
+    material.opacity_texture.wrap_u = Wrap::clamp;
+    saved_material(material, warning);
+    material.opacity_texture.uv_transform = Mat3::Identity();
+    saved_material(material, warning);
+    material.base_color_texture.wrap_u = Wrap::clamp;
+    saved_material(material);
+    // 2 texels, 8000 times, are more than are made.
+    material.base_color_texture.wrap_u = material.opacity_texture.wrap_u = Wrap::repeat;
+    material.opacity_texture.uv_transform(0, 0) = 8000;
+    saved_material(material, warning);
+}
+
 TEST(Glb, RoundTripsAHierarchyAndClouds) {
     MeshData root;
     root.name = "root";

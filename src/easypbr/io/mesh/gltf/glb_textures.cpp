@@ -1,7 +1,11 @@
 #include "easypbr/io/mesh/gltf/glb_textures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/gltf/gltf_extensions.h"
@@ -13,26 +17,117 @@ namespace {
 struct Plane {
     Image image;
     int channel = 0;
+    /// From the texture coordinates of the merged texture to its own, where these are others.
+    std::optional<Mat3d> transform = {};
 
     uint8_t at(int x, int y, int width, int height) const {
+        if (transform) return at_center(x, y, width, height);
         const int column = int((long long)x * image.width() / width),
                   row = int((long long)y * image.height() / height);
         return image.at<uint8_t>(column, row)[channel];
+    }
+
+    uint8_t at_center(int x, int y, int width, int height) const {
+        const Vec3d uv = *transform * Vec3d((x + 0.5) / width, 1 - (y + 0.5) / height, 1);
+        const auto texel = [](double t, int size) {
+            return std::clamp(int((t - std::floor(t)) * size), 0, size - 1);
+        };
+        return image.at<uint8_t>(texel(uv.x(), image.width()),
+                                 image.height() - 1 - texel(uv.y(), image.height()))[channel];
     }
 };
 
 Plane plane_of(const Texture& texture, int channel) {
     const Image image = to_u8(*texture.image);
-    return {image, std::min(channel, image.channels() - 1)};
+    return {.image = image, .channel = std::min(channel, image.channels() - 1)};
+}
+
+/// A channel that is put together with those of other textures.
+struct Part {
+    const Texture* texture;
+    const char* name;  ///< of the material's texture
+};
+
+/// Largest width and height of what is resampled.
+constexpr double largest_resampled_side = 8192;
+
+bool is_repeated(const Texture& texture) {
+    return texture.wrap_u == Wrap::repeat && texture.wrap_v == Wrap::repeat;
+}
+
+/// From the texture coordinates that one texture has to those of another, where a texture that is mapped as
+/// `like` can show `other`: both have the same mapping, or a tile of `like` spans whole periods of `other`.
+std::optional<Mat3d> resampling(const Texture& like, const Texture& other) {
+    const bool same_wraps = like.wrap_u == other.wrap_u && like.wrap_v == other.wrap_v;
+    if (same_wraps && like.uv_transform == other.uv_transform) return Mat3d::Identity();
+    const Mat3d to = like.uv_transform.cast<double>(), from = other.uv_transform.cast<double>();
+    if (!is_repeated(like) || !is_repeated(other) || to.determinant() == 0) return {};
+    Mat3d M = from * to.inverse();
+    if (!M.allFinite()) return {};
+    const Eigen::Matrix2d periods = M.topLeftCorner<2, 2>().array().round();
+    // Factors of files have about six digits.
+    if ((M.topLeftCorner<2, 2>() - periods).cwiseAbs().maxCoeff() > 1e-5) return {};
+    M.topLeftCorner<2, 2>() = periods;
+    const Eigen::Vector2d texels =
+        periods.cwiseAbs().transpose() * Eigen::Vector2d(other.image->width(), other.image->height());
+    if (texels.maxCoeff() > largest_resampled_side) return {};
+    return M;
+}
+
+/// Which part's mapping the merged texture has, and how the others are resampled into it.
+struct Merge {
+    const Texture* like = nullptr;
+    std::map<const Texture*, Mat3d> transforms;
+    std::vector<const char*> left_out;  ///< parts that get the mapping of `like` in place of theirs
+};
+
+/// The first part under which all others keep their mappings; else the first of all.
+Merge merge_of(const std::vector<Part>& parts) {
+    Merge first;
+    for (const Part& like : parts) {
+        Merge merge{like.texture, {}, {}};
+        for (const Part& other : parts) {
+            const std::optional<Mat3d> transform = resampling(*like.texture, *other.texture);
+            if (transform)
+                merge.transforms[other.texture] = *transform;
+            else
+                merge.left_out.push_back(other.name);
+        }
+        if (merge.left_out.empty()) return merge;
+        if (!first.like) first = std::move(merge);
+    }
+    return first;
+}
+
+/// The parts that become one texture with others that may have another mapping.
+std::vector<Part> parts_of_surface(const Material& material) {
+    std::vector<Part> parts;
+    if (material.metallic_texture) parts.push_back({&material.metallic_texture, "metallic_texture"});
+    if (material.roughness_texture) parts.push_back({&material.roughness_texture, "roughness_texture"});
+    return parts;
+}
+
+std::vector<Part> parts_of_color(const Material& material) {
+    std::vector<Part> parts;
+    if (!material.opacity_texture) return parts;
+    if (material.base_color_texture) parts.push_back({&material.base_color_texture, "base_color_texture"});
+    parts.push_back({&material.opacity_texture, "opacity_texture"});
+    return parts;
+}
+
+/// Texels of a plane along each axis of the merged texture.
+Eigen::Vector2i size_of_plane(const Plane& plane) {
+    const Eigen::Vector2i size(plane.image.width(), plane.image.height());
+    if (!plane.transform) return size;
+    return plane.transform->topLeftCorner<2, 2>().cast<int>().cwiseAbs().transpose() * size;
 }
 
 /// A texture like `like`, of the larger of its planes' sizes; a channel without an image is 255.
 Texture merged_texture(const Texture& like, const std::vector<Plane>& planes) {
-    int width = 1, height = 1;
-    for (const Plane& plane : planes) {
-        width = std::max(width, plane.image.width());
-        height = std::max(height, plane.image.height());
-    }
+    Eigen::Vector2i size(1, 1);
+    for (const Plane& plane : planes)
+        if (!plane.image.empty()) size = size.cwiseMax(size_of_plane(plane));
+    const int width = size.x(), height = size.y();
     auto image = std::make_shared<Image>(width, height, int(planes.size()), PixelType::u8);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
@@ -45,27 +140,40 @@ Texture merged_texture(const Texture& like, const std::vector<Plane>& planes) {
     return out;
 }
 
+/// A plane as the merge has it.
+Plane placed(const Merge& merge, const Texture& texture, int channel) {
+    Plane plane = plane_of(texture, channel);
+    const auto found = merge.transforms.find(&texture);
+    if (found != merge.transforms.end() && !found->second.isIdentity(0)) plane.transform = found->second;
+    return plane;
+}
+
 /// glTF's one texture for both: roughness in green, metallic in blue.
 Texture metallic_roughness(const Material& material) {
     const Texture& metallic = material.metallic_texture;
     const Texture& roughness = material.roughness_texture;
     if (!metallic && !roughness) return {};
-    if (metallic.image == roughness.image && metallic.channel == 2 && roughness.channel == 1) return metallic;
+    const Merge merge = merge_of(parts_of_surface(material));
+    const bool is_one = metallic.image == roughness.image && merge.left_out.empty() &&
+                        metallic.uv_transform == roughness.uv_transform;
+    if (is_one && metallic.channel == 2 && roughness.channel == 1) return metallic;
     std::vector<Plane> planes(3);
-    if (roughness) planes[1] = plane_of(roughness, roughness.channel);
-    if (metallic) planes[2] = plane_of(metallic, metallic.channel);
-    return merged_texture(metallic ? metallic : roughness, planes);
+    if (roughness) planes[1] = placed(merge, roughness, roughness.channel);
+    if (metallic) planes[2] = placed(merge, metallic, metallic.channel);
+    return merged_texture(*merge.like, planes);
 }
 
 Texture base_color(const Material& material) {
     const Texture& color = material.base_color_texture;
     const Texture& opacity = material.opacity_texture;
     if (!opacity) return color;
+    const Merge merge = merge_of(parts_of_color(material));
     std::vector<Plane> planes(4);
     if (color)
-        for (int c = 0; c < 3; ++c) planes[size_t(c)] = plane_of(color, color.image->channels() < 3 ? 0 : c);
-    planes[3] = plane_of(opacity, opacity.channel);
-    return merged_texture(color ? color : opacity, planes);
+        for (int c = 0; c < 3; ++c)
+            planes[size_t(c)] = placed(merge, color, color.image->channels() < 3 ? 0 : c);
+    planes[3] = placed(merge, opacity, opacity.channel);
+    return merged_texture(*merge.like, planes);
 }
 
 /// A texture whose values stand in the given channel.
@@ -97,6 +205,16 @@ OrderedJson color_json(const Vec3& v) {
 }
 
 }  // namespace
+
+std::vector<std::string> mappings_left_out_of_gltf(const MeshData& mesh) {
+    std::vector<std::string> names;
+    for (const Material& material : mesh.materials)
+        for (const auto& parts : {parts_of_surface(material), parts_of_color(material)})
+            for (const char* const name : merge_of(parts).left_out)
+                names.push_back(fmt::format("transform and wraps of {} of material '{}' beside those of {}",
+                                            name, material.name, parts.front().name));
+    return names;
+}
 
 size_t GlbContent::add_view(const void* data, size_t size, int target) {
     binary.resize((binary.size() + 3) / 4 * 4, '\0');

@@ -5,8 +5,9 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
-#include "easypbr/scene/material.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 
@@ -23,6 +24,11 @@ struct GlbContent {
     /// The object of an extension of `object`, which is noted as used.
     OrderedJson& extend(OrderedJson& object, const char* extension);
 };
+
+/// glTF has one texture for metallic and roughness, and one for base colour and opacity. Names, for a
+/// message, of those whose transform or wraps differ from those that the one has, and that cannot be
+/// resampled into it: only where both repeat and a tile of one spans whole periods of the other.
+std::vector<std::string> mappings_left_out_of_gltf(const MeshData& mesh);
 
 class GlbMaterials {
   public:
