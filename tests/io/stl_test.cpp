@@ -7,6 +7,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "io/gltf_decoded.h"
 
 namespace easypbr::stl_test {
 
@@ -58,6 +59,13 @@ MeshData read(const std::string& text, float crease_angle_deg = 30) {
     MeshData mesh = io::read_stl(io::Source(std::string_view(text), "test.stl"), {crease_angle_deg});
     validate(mesh);
     return mesh;
+}
+
+/// What is said while a text is read.
+std::string warnings_of(const std::string& text) {
+    const LogCapture log;
+    read(text);
+    return log.text;
 }
 
 }  // namespace
@@ -117,6 +125,47 @@ TEST(Stl, ReadsManyTextFacets) {
     ASSERT_EQ(mesh.F.rows(), 12000);
     ASSERT_EQ(mesh.V.rows(), 36000);
     for (int i = 0; i < 12000; ++i) ASSERT_EQ(mesh.V(mesh.F(i, 1), 0), i * 2.f + 1);
+}
+
+// A cut anywhere before the last line leaves a facet without its end.
+TEST(Stl, RefusesTextThatIsCutOff) {
+    const std::string text = ascii(cube());
+    EXPECT_EQ(warnings_of(text), "");
+    const std::string whole = text.substr(0, text.find("endsolid"));
+    EXPECT_EQ(read(whole).F.rows(), 12);
+    EXPECT_NE(warnings_of(whole).find("'endsolid' is missing"), std::string::npos);
+    const size_t last = text.rfind("  facet");
+    for (size_t end = last + 7; end + 3 < whole.size(); ++end)
+        EXPECT_THROW(read(text.substr(0, end)), FormatError) << text.substr(last, end - last);
+    EXPECT_THROW(read("solid a\nfacet normal 0 0 1\n" + text.substr(text.find('\n') + 1)), FormatError)
+        << "a facet inside another";
+    EXPECT_EQ(warnings_of(text + "\n \r\n"), "");
+    EXPECT_EQ(warnings_of(text + text), "") << "several solids";
+}
+
+TEST(Stl, ReadsBinaryFilesBeforeOtherBytesWhateverTheirHeader) {
+    const LogCapture log;
+    for (const std::string title : {"solid cube", "made by a test"}) {
+        EXPECT_EQ(read(binary(cube(), title) + "\n").F.rows(), 12) << title;
+        EXPECT_EQ(read(binary(cube(), title) + std::string(100, 'x')).F.rows(), 12) << title;
+        const std::string whole = binary(cube(), title);
+        try {
+            read(whole.substr(0, whole.size() - 60));
+            FAIL() << title;
+        } catch (const FormatError& error) {
+            EXPECT_NE(std::string(error.what()).find("truncated: 12 facets"), std::string::npos);
+        }
+    }
+    EXPECT_EQ(log.text, "");
+}
+
+// The last byte of a facet has bit 15 of its attributes.
+TEST(Stl, NamesColorsOfFacets) {
+    std::string viscam = binary(cube(), "made by a test");
+    EXPECT_EQ(warnings_of(viscam), "");
+    viscam[84 + 50 * 7 + 49] = '\x80';
+    EXPECT_NE(warnings_of(viscam).find("colours of facets are left out"), std::string::npos);
+    EXPECT_NE(warnings_of(binary(cube(), "COLOR=abcd")).find("colours of facets"), std::string::npos);
 }
 
 }  // namespace easypbr::stl_test

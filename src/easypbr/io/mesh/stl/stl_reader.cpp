@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 
 #include "easypbr/core/ascii.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -45,11 +47,23 @@ bool starts_with_word(const char* p, const char* end, std::string_view word) {
     return size_t(end - p) >= word.size() && ascii::same_letters({p, word.size()}, word);
 }
 
-/// Binary files may begin with "solid" as well, so the size decides first.
+/// Binary files may begin with "solid" as well: the size decides, and then that text has no null bytes, as
+/// those of the count and of the first facet, where bytes follow the facets or facets are missing.
 bool is_text_stl(const Source& source) {
     if (source.bytes.size() == header_bytes + facet_bytes * declared_facets(source)) return false;
+    if (source.bytes.substr(0, header_bytes + facet_bytes).find('\0') != std::string_view::npos) return false;
     const Source text = source.without_mark();
     return starts_with_word(text.begin(), text.end(), "solid");
+}
+
+/// Colours of facets are in their last two bytes: by bit 15 in files of VisCAM and SolidView, by the header
+/// in those of Materialise Magics.
+bool has_color(const char* facet) {
+    return (facet[facet_bytes - 1] & 0x80) != 0;
+}
+
+bool header_has_color(const Source& source) {
+    return source.bytes.substr(0, 80).find("COLOR=") != std::string_view::npos;
 }
 
 Corners read_binary(const Source& source) {
@@ -60,11 +74,18 @@ Corners read_binary(const Source& source) {
     if (count > INT32_MAX / 3) fail(source, "more facets than a mesh can hold");
     Corners corners = make_corners(count * 9);
     Progress progress(source, source.bytes.size());
+    std::atomic<bool> is_colored = header_has_color(source);
     parallel_chunks(count, stl_grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
-            std::memcpy(corners.data() + i * 9, source.begin() + header_bytes + i * facet_bytes + 12, 36);
+        bool any = false;
+        for (size_t i = begin; i < end; ++i) {
+            const char* const facet = source.begin() + header_bytes + i * facet_bytes;
+            std::memcpy(corners.data() + i * 9, facet + 12, 36);
+            any = any || has_color(facet);
+        }
+        if (any) is_colored = true;
         progress.advance((end - begin) * facet_bytes);
     });
+    if (is_colored) log_warning(fmt::format("{}: colours of facets are left out", source.path.string()));
     return corners;
 }
 
@@ -80,12 +101,16 @@ std::vector<size_t> facet_chunks(const Source& source) {
     return starts;
 }
 
-/// Corners of the facets in [p, end); a facet must have three.
+/// Corners of the facets in [p, end); a facet must have three, and end.
 std::vector<float> read_facets(const Source& source, const char* p, const char* end) {
     std::vector<float> corners;
     size_t in_facet = 0;
+    bool is_open = false;
     for (; p != end; p = next_line(p, end)) {
-        if (starts_with_word(p, end, "vertex")) {
+        if (starts_with_word(p, end, "facet")) {
+            if (is_open) fail_at_line(source, p, "a facet begins inside another");
+            is_open = true;
+        } else if (starts_with_word(p, end, "vertex")) {
             const char* line = p;
             read_word(p, end);
             for (int k = 0; k < 3; ++k) {
@@ -98,10 +123,25 @@ std::vector<float> read_facets(const Source& source, const char* p, const char* 
             if (in_facet != 3)
                 fail_at_line(source, p, fmt::format("a facet has {} vertices, expected 3", in_facet));
             in_facet = 0;
+            is_open = false;
         }
     }
-    if (in_facet != 0) fail_at_line(source, end, "the file ends inside a facet");
+    if (is_open || in_facet != 0)
+        fail_at_line(source, end,
+                     end == source.end() ? "the file ends inside a facet" : "a facet begins inside another");
     return corners;
+}
+
+/// Scripts leave out the last line, so that the facets before it are whole; a file that has been cut off
+/// rarely ends behind one.
+void warn_of_missing_end(const Source& source) {
+    const size_t last = source.bytes.find_last_not_of(" \t\r\n\v\f");
+    if (last == std::string_view::npos) return;
+    const size_t feed = source.bytes.rfind('\n', last);
+    const char* const line = source.begin() + (feed == std::string_view::npos ? 0 : feed + 1);
+    if (!starts_with_word(line, source.end(), "endsolid"))
+        log_warning(fmt::format("{}: 'endsolid' is missing at the end; the file may have been cut off",
+                                source.path.string()));
 }
 
 Corners read_text(const Source& given) {
@@ -120,6 +160,7 @@ Corners read_text(const Source& given) {
     Corners corners = make_corners(begin.back());
     parallel_for(parts.size(), 1,
                  [&](size_t i) { std::copy(parts[i].begin(), parts[i].end(), corners.data() + begin[i]); });
+    warn_of_missing_end(source);
     return corners;
 }
 
