@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 
 import pytest
 
@@ -87,3 +88,35 @@ def test_the_reader_does_not_outlive_its_parent(crashing, tmp_path):
     while any(map(is_running, readers)) and time.monotonic() < end:
         time.sleep(0.05)
     assert not any(map(is_running, readers))
+
+
+#: The parts of a 3MF file but its model.
+CONTENT_TYPES = """<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>"""
+RELATIONSHIPS = """<?xml version="1.0"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Target="/3D/3dmodel.model" Id="r0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>"""
+MODEL = """<?xml version="1.0"?>
+<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
+<basematerials id="1"><base name="x" displaycolor="COLOR"/></basematerials>
+<object id="2" type="model" pid="1" pindex="0"><mesh>
+<vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices>
+<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object></resources>
+<build><item objectid="2"/></build></model>"""
+
+
+@pytest.mark.parametrize("text, opacity", [("#FF8000", 1), ("#FF8000FF", 1), ("#ff800033", 0.2)])
+def test_display_colors_of_3mf_are_srgb(crashing, tmp_path, text, opacity):
+    """3MF Core Specification, 3.4.1.1: sRGB and alpha. 128 is ((128 / 255 + 0.055) / 1.055)^2.4 = 0.21586, to 5 digits."""
+    path = tmp_path / "a.3mf"
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr("[Content_Types].xml", CONTENT_TYPES)
+        file.writestr("_rels/.rels", RELATIONSHIPS)
+        file.writestr("3D/3dmodel.model", MODEL.replace("COLOR", text))
+    mesh = Mesh(path)
+    while mesh.children:
+        mesh = mesh.children[0]
+    assert mesh.material.base_color == pytest.approx((1, 0.21586, 0), abs=1e-5)
+    assert mesh.material.opacity == pytest.approx(opacity, abs=1e-6)

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "easypbr/core/color.h"
 #include "easypbr/scene/material.h"
 
 namespace easypbr::io {
@@ -31,10 +32,19 @@ Wrap wrap_of(aiTextureMapMode mode) {
     return mode == aiTextureMapMode_Wrap ? Wrap::repeat : Wrap::clamp;
 }
 
-void convert_factors(const aiMaterial& from, Material& out) {
+/// "#RRGGBB" or "#RRGGBBAA", whose alpha is the opacity (3MF Core Specification, 3.4.1.1). assimp has an
+/// alpha of 0 where the text has none.
+void convert_display_color(const aiColor4D& color, Material& out) {
+    out.base_color = {linear_from_srgb(color.r), linear_from_srgb(color.g), linear_from_srgb(color.b)};
+    if (color.a > 0) out.opacity = std::min(color.a, 1.0f);
+}
+
+void convert_factors(const aiMaterial& from, bool is_3mf, Material& out) {
     if (const auto color = property<aiColor4D>(from, AI_MATKEY_BASE_COLOR)) {
         out.base_color = Vec3(color->r, color->g, color->b);
         out.opacity = color->a;
+    } else if (const auto display = property<aiColor4D>(from, AI_MATKEY_COLOR_DIFFUSE); display && is_3mf) {
+        convert_display_color(*display, out);
     } else if (const auto diffuse = property<aiColor3D>(from, AI_MATKEY_COLOR_DIFFUSE)) {
         out.base_color = positive(*diffuse);
     }
@@ -99,9 +109,9 @@ void write_slot(const aiScene& scene, const aiMaterial& from, std::initializer_l
     for (const TextureName& texture : textures) write_texture(scene, texture, out);
 }
 
-void write_material(const aiScene& scene, const aiMaterial& from, MessageWriter& out) {
+void write_material(const aiScene& scene, const aiMaterial& from, bool is_3mf, MessageWriter& out) {
     Material factors;
-    convert_factors(from, factors);
+    convert_factors(from, is_3mf, factors);
     out.put_text(from.GetName().C_Str());
     write_factors(factors, out);
     write_slot(scene, from, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, out);
@@ -137,9 +147,10 @@ void write_images(const aiScene& scene, MessageWriter& out) {
     for (unsigned i = 0; i < scene.mNumTextures; ++i) write_image(*scene.mTextures[i], out);
 }
 
-void write_materials(const aiScene& scene, MessageWriter& out) {
+void write_materials(const aiScene& scene, bool is_3mf, MessageWriter& out) {
     out.put_count(scene.mNumMaterials);
-    for (unsigned i = 0; i < scene.mNumMaterials; ++i) write_material(scene, *scene.mMaterials[i], out);
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i)
+        write_material(scene, *scene.mMaterials[i], is_3mf, out);
 }
 
 }  // namespace easypbr::io

@@ -1,5 +1,6 @@
 #include "easypbr/io/mesh/assimp/reader/scene_writer.h"
 
+#include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -9,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 
 #include "easypbr/io/mesh/assimp/reader/material_writer.h"
 
@@ -145,6 +147,14 @@ class SceneWriter {
     MessageWriter& out_;
 };
 
+/// Whether the file that was read was a 3MF, whatever its name.
+bool is_3mf(const Assimp::Importer& importer) {
+    const int index = importer.GetPropertyInteger("importerIndex", -1);
+    const aiImporterDesc* const description = index < 0 ? nullptr : importer.GetImporterInfo(size_t(index));
+    return description &&
+           std::string_view(description->mFileExtensions).find("3mf") != std::string_view::npos;
+}
+
 }  // namespace
 
 void write_scene(const std::string& path, MessageWriter& out) {
@@ -154,7 +164,7 @@ void write_scene(const std::string& path, MessageWriter& out) {
     if (!scene || !scene->mRootNode) throw std::runtime_error(importer->GetErrorString());
     if (scene->mNumMeshes == 0) throw std::runtime_error("there is no mesh in it");
     write_images(*scene, out);
-    write_materials(*scene, out);
+    write_materials(*scene, is_3mf(*importer), out);
     SceneWriter(*scene, out).write_node(*scene->mRootNode);
 }
 
