@@ -50,6 +50,17 @@ TEST(Off, FacesMayHaveColors) {
     EXPECT_EQ(some.C.row(some.F(1, 0)).minCoeff(), 1) << "white";
 }
 
+// Samples of the faces do not hit the one.
+TEST(Off, OneFaceOfManyMayHaveAColor) {
+    constexpr int count = 20001, colored = 12346;
+    std::string text = fmt::format("OFF\n4 {} 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n", count);
+    for (int i = 0; i < count; ++i) text += i == colored ? "3 0 1 2 255 0 0\n" : "3 0 2 3\n";
+    const MeshData mesh = read(text);
+    ASSERT_EQ(mesh.C.rows(), mesh.V.rows());
+    EXPECT_EQ(Vec3(mesh.C.row(mesh.F(colored, 0))), Vec3(1, 0, 0));
+    EXPECT_EQ(Vec3(mesh.C.row(mesh.F(0, 0))), Vec3(1, 1, 1)) << "white beside it";
+}
+
 TEST(Off, SaysWhichColorsOfFacesAreLeftOut) {
     std::vector<std::string> warnings;
     set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });

@@ -67,6 +67,23 @@ TEST(Xyz, ReadsNamedColumns) {
     }
 }
 
+// CloudCompare's colours in 0 .. 1, and the texture coordinates of Matterport's scans.
+TEST(Xyz, ReadsFloatColorsAndTextureCoordinatesOfOtherPrograms) {
+    const MeshData colored = read("//X Y Z Rf Gf Bf\n0 0 0 0.25 0.5 1\n1 0 0 0 0 0\n");
+    EXPECT_EQ(names_of(colored), "C3 ");
+    // Codes of 16 bits hold 0 and 1 exactly, others to half a code.
+    EXPECT_NEAR(colored.C(0, 0), 0.25f, 1 / 65535.0f);
+    EXPECT_EQ(colored.C(0, 2), 1);
+    EXPECT_EQ(names_of(read("//X Y Z Rf Gf Bf Af\n0 0 0 0 1 1 0.5\n")), "C4 ");
+    const MeshData mapped = read("x,y,z,tx,ty\n0,0,0,0.25,0.75\n");
+    EXPECT_EQ(names_of(mapped), "");
+    ASSERT_EQ(mapped.UV.rows(), 1);
+    EXPECT_EQ(mapped.UV(0, 1), 0.75f);
+    const MeshData surfels = read("x,y,z,tx,ty,tz\n0,0,0,1,0,0\n");
+    EXPECT_TRUE(surfels.UV.empty());
+    EXPECT_EQ(surfels.T.rows(), 1);
+}
+
 TEST(Xyz, TellsColumnsWithoutNamesFromTheirNumbers) {
     const auto expect = [](const std::string& rows, const std::string& names,
                            const std::string& file = "t.xyz") {

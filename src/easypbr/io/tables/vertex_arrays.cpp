@@ -34,11 +34,13 @@ const Spellings normal_names{
     {"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}, {"normals:0", "normals:1", "normals:2"}};
 const Spellings tangent_names{{"tx", "ty", "tz"}};
 const Spellings bitangent_names{{"bitangent_length"}};
-const Spellings uv_names{{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}};
+const Spellings uv_names{{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"tx", "ty"}};
 const Spellings color_names{{"red", "green", "blue", "alpha"},
                             {"red", "green", "blue"},
                             {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"},
                             {"diffuse_red", "diffuse_green", "diffuse_blue"},
+                            {"rf", "gf", "bf", "af"},
+                            {"rf", "gf", "bf"},
                             {"r", "g", "b", "a"},
                             {"r", "g", "b"}};
 const Spellings label_names{{"label"},          {"labels"},         {"class"},

@@ -162,12 +162,28 @@ class OffReader {
         return color;
     }
 
+    /// Whether something stands behind the indices of any face. Samples tell where many have colours.
+    bool has_colors_of_faces(const TextRows& rows) const {
+        const auto samples = sample_rows(rows, header_.vertices, header_.faces);
+        const auto is_colored = [&](const char* row) {
+            return color_behind_indices(row, source_.end()).size() > 0;
+        };
+        if (std::ranges::any_of(samples, is_colored)) return true;
+        if (samples.size() == header_.faces) return false;
+        std::atomic<bool> any{false};
+        parallel_for(rows.chunks.size(), 1, [&](size_t i) {
+            size_t row = rows.chunks[i].first_row;
+            for_each_row(rows.chunks[i], [&](const char* p) {
+                const size_t face = row++ - header_.vertices;
+                if (face < header_.faces && !any && is_colored(p)) any = true;
+            });
+        });
+        return any;
+    }
+
     /// Faces may have colours each on its own; those without one are white beside others.
     void read_colors_of_faces(const TextRows& rows) {
-        const auto samples = sample_rows(rows, header_.vertices, header_.faces);
-        const bool any = std::ranges::any_of(
-            samples, [&](const char* row) { return color_behind_indices(row, source_.end()).size() > 0; });
-        if (!any) return;
+        if (!has_colors_of_faces(rows)) return;
         charge_memory(uint64_t(header_.faces) * 4 * sizeof(float), "the colours of its faces");
         ArrayXf::Dense C = ArrayXf::Dense::Constant(Eigen::Index(header_.faces), 4, NAN);
         std::atomic<size_t> mapped{0}, colored{0};
