@@ -12,8 +12,9 @@ import pytest
 import yaml
 
 from easypbr import ArgumentError, FileError
-from easypbr.dataset import MotionSpec, ObjectSpec, generate
+from easypbr.dataset import ImageSpec, MotionSpec, ObjectSpec, generate
 from easypbr.dataset.folder import FolderWriter, locked
+from easypbr.dataset.frames import FrameMaker
 from easypbr.dataset.writers import WRITERS
 from test_dataset import hashes, level, small
 
@@ -206,6 +207,36 @@ def test_damaged_frames_are_made_again(tmp_path, damage):
         (tmp_path / "images/000001.png").unlink()
     else:
         (tmp_path / "records/000001.json").write_text(damage)
+    generate(spec, tmp_path, workers=1)
+    assert hashes(tmp_path) == made
+
+
+@pytest.mark.parametrize("image_format", ["png", "jpg"])
+def test_files_are_written_in_a_folder_that_each_run_removes(tmp_path, monkeypatch, image_format):
+    """Where the place of a file is not written to, what a killed process leaves of it is nowhere else."""
+
+    def killed(source, target):
+        raise InterruptedError(f"{source} {target}")
+
+    writer = FolderWriter(small(image=ImageSpec((96, 72), 1, image_format)), tmp_path, [])
+    frame = FrameMaker(small()).make(0)
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "replace", killed)
+        with pytest.raises(FileError, match=f"cannot write .*000000.{image_format}"):
+            writer.write_frame(frame)
+    assert list((tmp_path / "images").iterdir()) == []
+    writer.write_frame(frame)
+    assert [path.name for path in (tmp_path / "images").iterdir()] == [f"000000.{image_format}"]
+
+
+def test_what_killed_processes_left_is_removed(tmp_path):
+    spec = small(count=2, image=ImageSpec((96, 72), 1, "jpg"), writers=("coco",))
+    generate(spec, tmp_path, workers=1)
+    made = hashes(tmp_path)
+    (tmp_path / "records/000001.json").unlink()
+    (tmp_path / "images/.easypbr.123.4.tmp").write_bytes(b"\xff\xd8")  # an earlier version's
+    (tmp_path / "unfinished").mkdir()
+    (tmp_path / "unfinished/123-000001.jpg").write_bytes(b"\xff\xd8")
     generate(spec, tmp_path, workers=1)
     assert hashes(tmp_path) == made
 

@@ -7,6 +7,7 @@ import errno
 import fcntl
 import json
 import os
+import shutil
 import socket
 from collections.abc import Iterator
 from pathlib import Path
@@ -55,16 +56,18 @@ class FolderWriter:
             return False
 
     def write_frame(self, frame: Frame) -> None:
-        picture = self.folder / self.base.picture(frame.index)
-        if picture.suffix == ".png":
-            self.put(self.base.picture(frame.index), _easypbr.encode_png(frame.picture))
-        else:
-            picture.parent.mkdir(parents=True, exist_ok=True)
-            _easypbr.save_image(frame.picture, picture)  # writes beside and renames
+        encode = _easypbr.encode_png if self.base.image_format == "png" else _easypbr.encode_jpeg
+        self.put(self.base.picture(frame.index), encode(frame.picture))
         for writer in self.writers:
             for name, data in writer.frame(frame).items():
                 self.put(name, data)
         self.put(f"records/{frame.index:06d}.json", (json.dumps(frame.record(), allow_nan=False) + "\n").encode())
+
+    def remove_unfinished(self) -> None:
+        """What processes that were killed have left. Earlier versions wrote JPEG files beside their places."""
+        shutil.rmtree(self.folder / "unfinished", ignore_errors=True)
+        for path in (self.folder / "images").glob(".easypbr.*.tmp"):
+            path.unlink(missing_ok=True)
 
     def put(self, name: str, data: bytes) -> None:
         """The whole file or none: written under another name, then renamed."""

@@ -7,7 +7,6 @@ import json
 import multiprocessing
 import multiprocessing.resource_tracker
 import os
-import shutil
 import signal
 import sys
 import threading
@@ -54,7 +53,7 @@ def generate(
 def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool, engine: str, address: str | None,
               threads: int | None) -> dict[str, Any]:
     claim(spec, folder)
-    shutil.rmtree(folder / "unfinished", ignore_errors=True)
+    FolderWriter(spec, folder, []).remove_unfinished()
     missing = _missing(spec, folder, range(spec.count))
     progress = _Progress(spec.count, spec.count - len(missing), quiet)
     if not missing:
@@ -239,7 +238,7 @@ def _finish(spec: DatasetSpec, folder: Path) -> dict[str, Any]:
     page, statistics = statistics_page(records, classes)
     writer.put("statistics.html", page.encode())
     writer.put("contact_sheet.png", _easypbr.encode_png(contact_sheet(records, folder, writer.base)))
-    shutil.rmtree(folder / "unfinished", ignore_errors=True)  # A worker that died may have left a file in it.
+    writer.remove_unfinished()  # A worker that died may have left files.
     return statistics
 
 
