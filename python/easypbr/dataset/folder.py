@@ -16,6 +16,7 @@ from typing import Any
 from .. import _easypbr
 from ..errors import ArgumentError, FileError
 from .frame import Frame
+from .sources import absolute_file, first_difference, source_files, states_of
 from .spec import DatasetSpec
 from .tables import ObjectSpec
 from .writers import WRITERS, Writer
@@ -151,7 +152,9 @@ def claim(spec: DatasetSpec, folder: Path) -> None:
     path = folder / "spec.json"
     if path.exists():
         try:
-            known = with_absolute_files(json.loads(path.read_text()))
+            known = json.loads(path.read_text())
+            known.pop("files", None)  # those of check_sources()
+            known = with_absolute_files(known)
         except (ValueError, LookupError, TypeError, AttributeError):
             known = None  # It is none of ours.
         if known == values:
@@ -165,7 +168,27 @@ def claim(spec: DatasetSpec, folder: Path) -> None:
         if name not in own and _holds(folder / name):
             raise ArgumentError(f"dataset: {folder} holds '{name}', which is of no set that was begun there: choose another "
                                 "folder, or move it away")
-    writer.put("spec.json", (json.dumps(values, indent=1) + "\n").encode())
+    writer.put("spec.json", _text(values))
+
+
+def check_sources(spec: DatasetSpec, folder: Path, begun: bool) -> None:
+    """Adds to the spec in the folder what the files are that it names, or, of a set with finished frames, compares them: frames
+    of other files would not go with these. A set that was begun by a version that kept no such list goes on. Raises
+    ArgumentError naming a file that has changed, is gone or has been added, and as source_files()."""
+    values: dict[str, Any] = json.loads((folder / "spec.json").read_text())
+    known = values.get("files", {})
+    if begun and "files" not in values:
+        return
+    found = states_of(source_files(spec), known)
+    difference = first_difference(known, found) if begun else ""
+    if difference:
+        raise ArgumentError(f"dataset: {folder}: {difference}; expected the files as they were, or another folder")
+    if values.get("files") != found:
+        FolderWriter(spec, folder, []).put("spec.json", _text(values | {"files": found}))
+
+
+def _text(values: dict[str, Any]) -> bytes:
+    return (json.dumps(values, indent=1) + "\n").encode()
 
 
 def _holds(path: Path) -> bool:
@@ -178,13 +201,8 @@ def with_absolute_files(values: dict[str, Any]) -> dict[str, Any]:
     for entry in values["objects"]:
         entry["class_name"] = ObjectSpec(entry["source"], entry["class_name"]).name()
         if not entry["source"].startswith("builtin:"):
-            entry["source"] = _absolute(entry["source"])
+            entry["source"] = absolute_file(entry["source"])
     if values["surroundings"]["source"]:
-        values["surroundings"]["source"] = _absolute(values["surroundings"]["source"])
-    values["background"]["files"] = [_absolute(file) for file in values["background"]["files"]]
+        values["surroundings"]["source"] = absolute_file(values["surroundings"]["source"])
+    values["background"]["files"] = [absolute_file(file) for file in values["background"]["files"]]
     return values
-
-
-def _absolute(file: str) -> str:
-    folder, name = os.path.split(os.path.abspath(file))
-    return os.path.join(os.path.realpath(folder), name)

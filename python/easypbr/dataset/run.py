@@ -18,7 +18,7 @@ from typing import Any
 from .. import _easypbr
 from ..errors import ArgumentError, Error
 from . import cluster
-from .folder import FolderWriter, claim, keep_memory, locked
+from .folder import FolderWriter, check_sources, claim, keep_memory, locked
 from .frames import FrameMaker
 from .report import contact_sheet, statistics_page
 from .spec import DatasetSpec
@@ -39,8 +39,8 @@ def generate(
     """Makes the data set in a folder, or what is missing of it, and returns its statistics. Worker processes are started
     for more than one worker, so scripts need the usual `if __name__ == "__main__":`. `engine`: "local", or "ray": frames
     are tasks of Ray (pip install 'easypbr[ray]'), on this machine or on the cluster at `address`, whose machines share
-    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set or another process
-    generates into it, ContextError when no cluster answers, and what drawing and writing raise."""
+    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set, one whose files have
+    changed since, or another process generates into it, ContextError when no cluster answers, and what drawing and writing raise."""
     spec.check()
     folder = Path(folder).absolute()
     check_engine(engine, address, workers, threads)
@@ -53,8 +53,11 @@ def generate(
 def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool, engine: str, address: str | None,
               threads: int | None) -> dict[str, Any]:
     claim(spec, folder)
-    FolderWriter(spec, folder, []).remove_unfinished()
+    writer = FolderWriter(spec, folder, [])
+    writer.remove_unfinished()
     missing = _missing(spec, folder, range(spec.count))
+    if missing or any(format_writer.reads_sources for format_writer in writer.writers):
+        check_sources(spec, folder, begun=len(missing) < spec.count)
     progress = _Progress(spec.count, spec.count - len(missing), quiet)
     if not missing:
         skipped: set[str] = set()

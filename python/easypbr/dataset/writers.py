@@ -59,6 +59,8 @@ class Writer:
     spec: DatasetTables
     #: Files and folders in the set's folder that all of its files are among.
     paths: tuple[str, ...] = ()
+    #: Whether finish() reads files that the spec names.
+    reads_sources = False
 
     def __init__(self, image_format: str, classes: list[str], spec: DatasetTables | None = None) -> None:
         self.image_format, self.classes, self.spec = image_format, classes, spec or DatasetTables()
@@ -248,6 +250,7 @@ class Bop(Writer):
     """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info, models_info."""
 
     paths: tuple[str, ...] = ("bop",)
+    reads_sources = True
 
     def frame(self, frame: Frame) -> dict[str, bytes]:
         name, base = f"{frame.index:06d}", "bop/000000"
@@ -293,12 +296,17 @@ class Bop(Writer):
                 "obj_id": entry["category_id"], "model": {"diameter": 1000 * entry["diameter"], **model}}
 
     def _models(self, truth: dict[str, list[dict[str, Any]]]) -> dict[str, bytes]:
-        """models_info.json and the meshes of the classes whose objects are all of one file and size."""
-        info = {entry["obj_id"]: entry["model"] for entries in truth.values() for entry in entries}
+        """models_info.json and the meshes of the classes whose objects are all of one file and size. A class is left out if its
+        objects differ all the same, as where the file changed after some frames."""
+        models: dict[int, list[dict[str, float]]] = {}
+        for entries in truth.values():
+            for entry in entries:
+                models.setdefault(entry["obj_id"], []).append(entry["model"])
         sources = {number: single_model(self.spec, name) for number, name in enumerate(self.classes, 1)}
-        files = {f"bop/models/obj_{number:06d}.ply": model_ply(*source) for number, source in sources.items() if source and number in info}
-        known = {str(number): info[number] for number, source in sources.items() if source and number in info}
-        return {"bop/models/models_info.json": _json(known), **files}
+        single = {number: source for number, source in sources.items() if source and number in models and _are_one(models[number])}
+        info = {str(number): models[number][0] for number in single}
+        return {"bop/models/models_info.json": _json(info),
+                **{f"bop/models/obj_{number:06d}.ply": model_ply(*source) for number, source in single.items()}}
 
     @staticmethod
     def _info(entry: dict[str, Any]) -> dict[str, Any]:
@@ -316,6 +324,12 @@ _BROWN = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
 
 def _has_skew(spec: DatasetTables) -> bool:
     return bool(spec.camera.K) and spec.camera.K[0][1] != 0
+
+
+def _are_one(models: list[dict[str, float]]) -> bool:
+    """Whether the boxes and diameters are those of one model, but for the rounding of poses (1e-15 of its size)."""
+    values = np.array([list(model.values()) for model in models])
+    return bool((np.ptp(values, axis=0) <= 1e-9 * values[:, 0].max()).all())  # The first is the diameter.
 
 
 class Nerfstudio(Writer):
