@@ -15,11 +15,11 @@ from easypbr import ArgumentError, FileError
 from easypbr.dataset import ImageSpec, MotionSpec, ObjectSpec, generate
 from easypbr.dataset.folder import FolderWriter, locked
 from easypbr.dataset.frames import FrameMaker
-from easypbr.dataset.writers import WRITERS
+from easypbr.dataset.writers import WRITERS, outputs
 from test_dataset import hashes, level, small
 
 #: What Python and the package import, and a stranger could leave beside a spec.
-MODULES = ("numpy", "json", "pickle", "random", "struct", "multiprocessing", "easypbr", "tomllib", "argparse")
+MODULES = ("numpy", "json", "pickle", "random", "signal", "struct", "multiprocessing", "easypbr", "tomllib", "argparse")
 
 
 SPEC = "writers = ['yolo']\n[image]\nsize = [64, 48]\nsamples = 1\n[background]\nskies = 1\n[[objects]]\nclass = 'drone'\n"
@@ -192,8 +192,7 @@ def test_folders_that_are_empty_or_of_no_writer_are_no_others(tmp_path):
 def test_all_files_of_writers_are_among_their_paths(tmp_path):
     spec = level(count=1, writers=tuple(WRITERS), motion=MotionSpec(0.1, 5.0, 0.0))
     generate(spec, tmp_path, workers=1)
-    writer = FolderWriter(spec, tmp_path, [])
-    known = {"spec.json", *writer.paths, *(name for one in writer.writers for name in one.paths)} - {"unfinished"}
+    known = {"spec.json", *(path.name for path in outputs(spec, tmp_path))} - {"unfinished"}
     assert {path.name for path in tmp_path.iterdir()} == known
 
 

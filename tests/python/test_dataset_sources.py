@@ -155,11 +155,28 @@ def test_sets_of_earlier_versions_go_on(meshes, tmp_path):
     assert path.read_text() == before  # What the first frame was drawn from is not known.
 
 
+@pytest.mark.parametrize("source", ["**/*.ply", "."])
+@pytest.mark.parametrize("place", ["meshes", "meshes/set", "."])
+def test_files_of_a_set_are_none_of_its_meshes(meshes, tmp_path, source, place):
+    """Labels could be read as points, models of BOP as meshes. The set is with its meshes, beneath them, and around them."""
+    folder = tmp_path / place
+    spec = spec_of("x", writers=("yolo", "bop"), objects=[ObjectSpec(str(meshes / source), "thing", size=0.8)])
+    (meshes / "b.ply").unlink()
+    generate(spec, tmp_path / "beyond", workers=1)
+    wanted = hashes(tmp_path / "beyond")
+    shutil.rmtree(tmp_path / "beyond")
+    made = begin(spec, folder)
+    assert (folder / "bop/models/obj_000001.ply").exists() and (folder / "labels/000000.txt").exists()
+    generate(spec, folder, workers=1)
+    assert hashes(folder) == made
+    assert wanted.items() <= made.items()
+
+
 def bop_models(meshes, sizes):
     """models_info.json of a class whose objects have models of these sizes, each in a frame of its own."""
     spec = spec_of(meshes / "a.ply", objects=[ObjectSpec(str(meshes / "a.ply"), "thing", size=0.8)])
     truth = {str(i): [{"obj_id": 1, "model": {"diameter": 1.5 * size, "size_x": size}}] for i, size in enumerate(sizes)}
-    files = Bop("png", ["thing"], spec)._models(truth)
+    files = Bop("png", ["thing"], spec)._models(truth, meshes / "set")
     return json.loads(files.pop("bop/models/models_info.json")), set(files)
 
 

@@ -12,6 +12,7 @@ from ..errors import ArgumentError, ContextError
 from .folder import FolderWriter, keep_memory
 from .frames import FrameMaker
 from .spec import DatasetSpec
+from .writers import outputs
 
 #: How often a task is given to another worker after one has died.
 _RETRIES = 3
@@ -43,7 +44,7 @@ def make_range(spec: DatasetSpec, folder: Path, indices: list[int], threads: int
     if _worker is None or _worker[0] != (spec, folder):
         keep_memory()
         os.environ["LP_NUM_THREADS"] = os.environ["EASYPBR_THREADS"] = str(threads)
-        maker = FrameMaker(spec)
+        maker = FrameMaker(spec, outputs(spec, folder))
         _worker = (spec, folder), maker, FolderWriter(spec, folder, maker.classes)
     _, maker, writer = _worker
     for index in indices:

@@ -19,7 +19,7 @@ from .frame import Frame
 from .sources import absolute_file, first_difference, source_files, states_of
 from .spec import DatasetSpec
 from .tables import ObjectSpec
-from .writers import WRITERS, Writer
+from .writers import WRITERS, Writer, outputs
 
 
 def keep_memory() -> None:
@@ -37,8 +37,6 @@ class FolderWriter:
 
     base: Writer
     writers: list[Writer]
-    #: Those that are written whatever the writers are.
-    paths: tuple[str, ...] = ("images", "records", "unfinished", "statistics.html", "contact_sheet.png")
 
     def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
         self.folder = folder
@@ -162,13 +160,12 @@ def claim(spec: DatasetSpec, folder: Path) -> None:
         begun = any(any((folder / name).glob("*")) for name in ("images", "records"))
         if begun or known is None:
             raise ArgumentError(f"dataset: {folder} holds a set of another spec or count: choose another folder, or remove it")
-    writer = FolderWriter(spec, folder, [])
     own = {"unfinished"} if path.exists() else set()
-    for name in (*writer.paths, *(name for format_writer in writer.writers for name in format_writer.paths)):
-        if name not in own and _holds(folder / name):
-            raise ArgumentError(f"dataset: {folder} holds '{name}', which is of no set that was begun there: choose another "
+    for output in outputs(spec, folder):
+        if output.name not in own and _holds(output):
+            raise ArgumentError(f"dataset: {folder} holds '{output.name}', which is of no set that was begun there: choose another "
                                 "folder, or move it away")
-    writer.put("spec.json", _text(values))
+    FolderWriter(spec, folder, []).put("spec.json", _text(values))
 
 
 def check_sources(spec: DatasetSpec, folder: Path, begun: bool) -> None:
@@ -179,7 +176,7 @@ def check_sources(spec: DatasetSpec, folder: Path, begun: bool) -> None:
     known = values.get("files", {})
     if begun and "files" not in values:
         return
-    found = states_of(source_files(spec), known)
+    found = states_of(source_files(spec, outputs(spec, folder)), known)
     difference = first_difference(known, found) if begun else ""
     if difference:
         raise ArgumentError(f"dataset: {folder}: {difference}; expected the files as they were, or another folder")

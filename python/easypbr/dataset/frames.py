@@ -1,5 +1,7 @@
 """One frame of a data set: placed, drawn, annotated. Follows from the spec and the frame's number alone."""
 
+from collections.abc import Collection
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,16 +32,17 @@ Model = tuple[Mesh, NDArray[Any], NDArray[Any]]
 
 
 class FrameMaker:
-    """Draws frames of a spec. Meshes and skies are kept from frame to frame, up to a number of bytes; nothing else is."""
+    """Draws frames of a spec; `outputs` as ObjectSpec.files(). Meshes and skies are kept from frame to frame, up to a number of
+    bytes; nothing else is."""
 
     classes: list[str]
 
-    def __init__(self, spec: DatasetSpec) -> None:
+    def __init__(self, spec: DatasetSpec, outputs: Collection[Path] = ()) -> None:
         spec.check()
         self.spec = spec
         self.classes = spec.class_names()
         self.skipped: list[str] = []
-        self._files = [entry.files() for entry in spec.objects]
+        self._files = [entry.files(outputs) for entry in spec.objects]
         self._models: Kept[Model] = Kept(_MOST_KEPT)
         self._skies: Kept[Environment] = Kept(_MOST_KEPT)
         self._surroundings: tuple[Mesh, NDArray[Any]] | None = None

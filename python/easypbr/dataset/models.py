@@ -1,6 +1,8 @@
 """Models of objects as files, for annotations that refer to them."""
 
 import io
+from collections.abc import Collection
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,14 +13,15 @@ from .extents import bounds, without_offset
 from .tables import DatasetTables
 
 
-def single_model(spec: DatasetTables, class_name: str) -> tuple[str, float] | None:
-    """The file and size of a class whose objects are all of one model; None for the others."""
+def single_model(spec: DatasetTables, class_name: str, outputs: Collection[Path] = ()) -> tuple[str, float] | None:
+    """The file and size of a class whose objects are all of one model; None for the others. `outputs` as
+    ObjectSpec.files()."""
     found = set()
     for entry in spec.objects:
         if entry.distractor or entry.name() != class_name:
             continue
         low, high = entry.size if isinstance(entry.size, tuple) else (entry.size, entry.size)
-        files = entry.files()
+        files = entry.files(outputs)
         found.add((files[0], low) if low == high and len(files) == 1 else None)
     return found.pop() if len(found) == 1 else None
 

@@ -22,6 +22,7 @@ from .folder import FolderWriter, check_sources, claim, keep_memory, locked
 from .frames import FrameMaker
 from .report import contact_sheet, statistics_page
 from .spec import DatasetSpec
+from .writers import outputs
 
 #: How often a frame is given to another worker after one has died.
 _RETRIES = 3
@@ -39,8 +40,9 @@ def generate(
     """Makes the data set in a folder, or what is missing of it, and returns its statistics. Worker processes are started
     for more than one worker, so scripts need the usual `if __name__ == "__main__":`. `engine`: "local", or "ray": frames
     are tasks of Ray (pip install 'easypbr[ray]'), on this machine or on the cluster at `address`, whose machines share
-    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set, one whose files have
-    changed since, or another process generates into it, ContextError when no cluster answers, and what drawing and writing raise."""
+    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set or one whose files
+    have changed since, or another process generates into it, ContextError when no cluster answers, and what drawing and
+    writing raise."""
     spec.check()
     folder = Path(folder).absolute()
     check_engine(engine, address, workers, threads)
@@ -107,7 +109,7 @@ def _starting_thread() -> Iterator[None]:
 
 def _make_here(spec: DatasetSpec, folder: Path, missing: list[int], progress: "_Progress") -> set[str]:
     """Each frame is written while the next one is drawn: compressing pictures keeps a single core busy."""
-    maker = FrameMaker(spec)
+    maker = FrameMaker(spec, outputs(spec, folder))
     writer = FolderWriter(spec, folder, maker.classes)
 
     def finish(frames: list[concurrent.futures.Future[Any]]) -> None:
@@ -147,7 +149,7 @@ def _begin_worker(spec: DatasetSpec, folder: Path, cores: list[int], share: int)
     own = [cores[(number * share + k) % len(cores)] for k in range(share)]
     os.sched_setaffinity(0, own)
     os.environ["LP_NUM_THREADS"] = str(share)
-    maker = FrameMaker(spec)
+    maker = FrameMaker(spec, outputs(spec, folder))
     _worker = maker, FolderWriter(spec, folder, maker.classes)
 
 

@@ -3,7 +3,8 @@
 import hashlib
 import os
 import stat
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from pathlib import Path
 from typing import Any
 
 from .tables import DatasetTables
@@ -20,10 +21,10 @@ def absolute_file(file: str) -> str:
     return os.path.join(os.path.realpath(folder), name)
 
 
-def source_files(spec: DatasetTables) -> list[str]:
+def source_files(spec: DatasetTables, outputs: Collection[Path]) -> list[str]:
     """The absolute names of the files that a spec names, by folders and patterns too; not of those that a mesh names in turn.
-    Raises as ObjectSpec.files()."""
-    files = [file for entry in spec.objects for file in entry.files()]
+    `outputs` as ObjectSpec.files(), which says what is raised."""
+    files = [file for entry in spec.objects for file in entry.files(outputs)]
     if spec.surroundings.source:
         files.append(spec.surroundings.source)
     if spec.background.mode in ("environment", "image"):

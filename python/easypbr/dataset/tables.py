@@ -5,7 +5,7 @@ import glob
 import json
 import os
 import urllib.parse
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -56,9 +56,10 @@ class ObjectSpec:
         """The name of the class: the one given, or that of its source."""
         return self.class_name or Path(self.source.removeprefix("builtin:")).stem
 
-    def files(self) -> list[str]:
+    def files(self, outputs: Collection[Path] = ()) -> list[str]:
         """The meshes that the source names; none for what is built in. Buffers of glTF files, whose name may end as that of a
-        scan does (.bin), are none. Raises ArgumentError for an unknown builtin and where there is no mesh."""
+        scan does (.bin), are none, nor is what a folder or pattern finds in `outputs`, folders that the set writes to. Raises
+        ArgumentError for an unknown builtin and where there is no mesh."""
         if self.source.startswith("builtin:"):
             name = self.source.removeprefix("builtin:")
             if name not in BUILTIN:
@@ -66,13 +67,23 @@ class ObjectSpec:
             return []
         if os.path.isdir(self.source):
             known = {"." + extension.lstrip(".") for extension in readable_mesh_extensions()}
-            files = without_buffers([str(p) for p in sorted(Path(self.source).rglob("*")) if p.suffix.lower() in known])
+            found = [str(p) for p in sorted(Path(self.source).rglob("*")) if p.suffix.lower() in known]
         else:
             found = [] if os.path.exists(self.source) else sorted(glob.glob(self.source, recursive=True))
-            files = without_buffers(found) if found else [self.source]
+            if not found:
+                return [self.source]
+        files = without_buffers(_outside(found, outputs))
         if not files:
             raise ArgumentError(f"dataset: {self.source}: there is no mesh")
         return files
+
+
+def _outside(files: list[str], folders: Collection[Path]) -> list[str]:
+    """The files that are in none of these folders, nor beneath them."""
+    real_folders = [os.path.realpath(folder) for folder in folders]
+    parents = {os.path.dirname(file) for file in files}
+    inside = {parent for parent in parents if any(Path(os.path.realpath(parent)).is_relative_to(real) for real in real_folders)}
+    return [file for file in files if os.path.dirname(file) not in inside]
 
 
 def without_buffers(files: list[str]) -> list[str]:

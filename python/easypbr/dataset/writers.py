@@ -17,6 +17,10 @@ from .models import model_ply, single_model
 from .tables import DatasetTables, Range
 
 
+#: What is written whatever the writers are.
+COMMON = ("images", "records", "unfinished", "statistics.html", "contact_sheet.png")
+
+
 def _json(value: object) -> bytes:
     return (json.dumps(value, indent=1, allow_nan=False) + "\n").encode()
 
@@ -49,6 +53,11 @@ def decode_rle(rle: dict[str, Any]) -> NDArray[Any]:
             value = shift = 0
     flags = np.repeat(np.arange(len(counts)) % 2 == 1, counts)
     return flags.reshape(width, height).T
+
+
+def outputs(spec: DatasetTables, folder: Path) -> list[Path]:
+    """Files and folders in the set's folder that all of its files are among, beside spec.json."""
+    return [folder / name for name in (*COMMON, *(path for writer in spec.writers for path in WRITERS[writer].paths))]
 
 
 class Writer:
@@ -276,7 +285,7 @@ class Bop(Writer):
             info[key] = [self._info(entry) for entry in record["objects"]]
         base = "bop/000000"
         return {f"{base}/scene_camera.json": _json(camera), f"{base}/scene_gt.json": _json(truth),
-                f"{base}/scene_gt_info.json": _json(info), **self._models(truth)}
+                f"{base}/scene_gt_info.json": _json(info), **self._models(truth, folder)}
 
     @staticmethod
     def _depth_scale(objects: list[dict[str, Any]]) -> float:
@@ -295,15 +304,18 @@ class Bop(Writer):
         return {"cam_R_m2c": (T[:3, :3] / scale).ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(),
                 "obj_id": entry["category_id"], "model": {"diameter": 1000 * entry["diameter"], **model}}
 
-    def _models(self, truth: dict[str, list[dict[str, Any]]]) -> dict[str, bytes]:
+    def _models(self, truth: dict[str, list[dict[str, Any]]], folder: Path) -> dict[str, bytes]:
         """models_info.json and the meshes of the classes whose objects are all of one file and size. A class is left out if its
         objects differ all the same, as where the file changed after some frames."""
         models: dict[int, list[dict[str, float]]] = {}
         for entries in truth.values():
             for entry in entries:
                 models.setdefault(entry["obj_id"], []).append(entry["model"])
-        sources = {number: single_model(self.spec, name) for number, name in enumerate(self.classes, 1)}
-        single = {number: source for number, source in sources.items() if source and number in models and _are_one(models[number])}
+        single = {}
+        for number, name in enumerate(self.classes, 1):
+            source = single_model(self.spec, name, outputs(self.spec, folder))
+            if source and number in models and _are_one(models[number]):
+                single[number] = source
         info = {str(number): models[number][0] for number in single}
         return {"bop/models/models_info.json": _json(info),
                 **{f"bop/models/obj_{number:06d}.ply": model_ply(*source) for number, source in single.items()}}
