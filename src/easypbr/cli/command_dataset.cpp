@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -20,17 +21,34 @@ constexpr const char* hint =
     "the generator is a part of the Python package; set EASYPBR_PYTHON to the Python that has it";
 
 /// `python -m` would search the current folder for modules first, and run a numpy.py that lies there. Python
-/// has an option against it (-P) from 3.11 on only.
+/// has an option against it (-P) from 3.11 on only. Ctrl-C, which run_dataset() has blocked, ends the imports
+/// as it ends main(): KeyboardInterrupt would leave them with a traceback, and numpy takes it for a broken
+/// installation.
 constexpr const char* start =
     "import sys\n"
     "sys.path[:] = [folder for folder in sys.path if folder]\n"
+    "import os, signal\n"
+    "def end(*_):\n"
+    "    try:\n"
+    "        os.write(2, b'easypbr: interrupted: started again it goes on\\n')\n"
+    "    finally:\n"
+    "        os._exit(130)\n"
+    "if signal.getsignal(signal.SIGINT) is signal.default_int_handler:\n"  // Else it is ignored.
+    "    signal.signal(signal.SIGINT, end)\n"
+    "signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})\n"
     "try:\n"
     "    from easypbr.dataset.__main__ import main\n"
     "except ModuleNotFoundError as error:\n"
     "    sys.exit(f'easypbr: error: dataset: {sys.executable} has no module {error.name}: "
     "the generator is a part of the Python package; "
     "pip install easypbr, or set EASYPBR_PYTHON to the Python that has it')\n"
-    "sys.exit(main())\n";
+    "try:\n"
+    "    if signal.getsignal(signal.SIGINT) is end:\n"
+    "        signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    "    code = main()\n"
+    "except KeyboardInterrupt:\n"
+    "    end()\n"
+    "sys.exit(code)\n";
 
 struct DatasetOptions {
     std::string spec;
@@ -111,9 +129,16 @@ int run_dataset(const DatasetOptions& options) {
     // For the worker processes, which are started by Python itself.
     setenv("PYTHONSAFEPATH", "1", 1);
     std::fflush(nullptr);
+    // Until Python has started, which takes a while, Ctrl-C waits: its own handler shows a traceback.
+    sigset_t interrupt, before;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &interrupt, &before);
     execv(pointers[0], pointers.data());
+    const int failure = errno;
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
     throw ContextError(
-        fmt::format("dataset: cannot run {} ({}): {}", arguments[0], std::strerror(errno), hint));
+        fmt::format("dataset: cannot run {} ({}): {}", arguments[0], std::strerror(failure), hint));
 }
 
 }  // namespace
