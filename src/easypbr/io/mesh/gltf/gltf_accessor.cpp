@@ -84,9 +84,10 @@ class Accessor {
         document_.fail(fmt::format("accessors[{}] {}", index_, what));
     }
 
-    /// Accounts for its values, so many bytes each.
-    void charge(size_t bytes) const {
-        charge_memory(uint64_t(count) * uint64_t(components) * bytes, fmt::format("accessors[{}]", index_));
+    /// Accounts for the values of so many rows, of so many bytes each.
+    void charge(size_t row_count, size_t bytes) const {
+        charge_memory(uint64_t(row_count) * uint64_t(components) * bytes,
+                      fmt::format("accessors[{}]", index_));
     }
 
     const Json* sparse() const { return member(json_, "sparse"); }
@@ -152,7 +153,16 @@ void fill_row(const Accessor& accessor, const std::byte* from, float* to) {
     });
 }
 
-void apply_sparse(GltfDocument& document, const Accessor& accessor, ArrayXf::Dense& out) {
+/// The place of a row among those that are read; nothing where it is none of them.
+std::optional<size_t> place_among(size_t row, const std::vector<int32_t>* rows) {
+    if (!rows) return row;
+    const auto found = std::ranges::lower_bound(*rows, int32_t(row));
+    if (found == rows->end() || size_t(*found) != row) return std::nullopt;
+    return size_t(found - rows->begin());
+}
+
+void apply_sparse(GltfDocument& document, const Accessor& accessor, const std::vector<int32_t>* rows,
+                  ArrayXf::Dense& out) {
     const Json& sparse = *accessor.sparse();
     const size_t count = document.integer(sparse, "count");
     const Json* values = member(sparse, "values");
@@ -162,7 +172,8 @@ void apply_sparse(GltfDocument& document, const Accessor& accessor, ArrayXf::Den
                                        document.optional_integer(*values, "byteOffset").value_or(0), count,
                                        size_t(accessor.components) * size_of_component(accessor.type));
     for (size_t i = 0; i < count; ++i)
-        fill_row(accessor, from.data + i * from.stride, out.row(where[i]).data());
+        if (const auto place = place_among(where[i], rows))
+            fill_row(accessor, from.data + i * from.stride, out.row(Eigen::Index(*place)).data());
 }
 
 }  // namespace
@@ -184,24 +195,29 @@ GltfRows gltf_rows(const GltfDocument& document, size_t index) {
     return rows;
 }
 
-ArrayXf::Dense read_floats(GltfDocument& document, size_t index, int least, int most) {
+ArrayXf::Dense read_floats(GltfDocument& document, size_t index, int least, int most,
+                           const std::vector<int32_t>* rows) {
     const Accessor accessor(document, index);
     if (accessor.components < least || accessor.components > most)
         accessor.fail(fmt::format("has {} components, expected {} to {}", accessor.components, least, most));
-    accessor.charge(sizeof(float));
-    ArrayXf::Dense out(Eigen::Index(accessor.count), accessor.components);
+    if (rows && !rows->empty() && size_t(rows->back()) >= accessor.count)
+        accessor.fail(fmt::format("has no row {}", rows->back()));
+    const size_t count = rows ? rows->size() : accessor.count;
+    accessor.charge(count, sizeof(float));
+    ArrayXf::Dense out(Eigen::Index(count), accessor.components);
     if (!accessor.rows.data)
         out.setZero();
     else
         with_component(accessor.type, [&]<class T>(T) {
-            parallel_for(accessor.count, accessor_grain, [&](size_t row) {
+            parallel_for(count, accessor_grain, [&](size_t i) {
+                const size_t row = rows ? size_t((*rows)[i]) : i;
                 const std::byte* from = accessor.rows.data + row * accessor.rows.stride;
-                float* to = out.data() + row * size_t(accessor.components);
+                float* to = out.data() + i * size_t(accessor.components);
                 for (int c = 0; c < accessor.components; ++c)
                     to[c] = as_float(load<T>(from + size_t(c) * sizeof(T)), accessor.normalized);
             });
         });
-    if (accessor.sparse()) apply_sparse(document, accessor, out);
+    if (accessor.sparse()) apply_sparse(document, accessor, rows, out);
     return out;
 }
 
@@ -211,7 +227,7 @@ std::vector<uint32_t> read_indices(GltfDocument& document, size_t index) {
     if (accessor.components != 1 || !is_unsigned)
         accessor.fail("must be a scalar of an unsigned integer type");
     if (accessor.sparse() || !accessor.rows.data) accessor.fail("holds indices without plain data");
-    accessor.charge(sizeof(uint32_t));
+    accessor.charge(accessor.count, sizeof(uint32_t));
     std::vector<uint32_t> out(accessor.count);
     with_component(accessor.type, [&]<class T>(T) {
         if constexpr (std::is_unsigned_v<T>)

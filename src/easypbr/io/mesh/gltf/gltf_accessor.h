@@ -21,9 +21,10 @@ struct GltfRows {
 GltfRows gltf_rows(const GltfDocument& document, size_t accessor);
 
 /// Rows of floats; normalised integers become 0..1 or -1..1, plain ones (KHR_mesh_quantization) keep their
-/// values. Throws FormatError unless the number of components lies in [least, most] and all bytes lie in the
-/// buffer.
-ArrayXf::Dense read_floats(GltfDocument& document, size_t accessor, int least, int most);
+/// values. `rows`: those that are read, ascending; null: all. Throws FormatError unless the number of
+/// components lies in [least, most], all bytes lie in the buffer and the rows are there.
+ArrayXf::Dense read_floats(GltfDocument& document, size_t accessor, int least, int most,
+                           const std::vector<int32_t>* rows = nullptr);
 
 /// Vertex indices. Throws FormatError unless it is a scalar of an unsigned integer type.
 std::vector<uint32_t> read_indices(GltfDocument& document, size_t accessor);

@@ -11,12 +11,13 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
+#include "easypbr/io/mesh/gltf/gltf_blocks.h"
 #include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
+#include "easypbr/io/mesh/gltf/gltf_used_rows.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/io/mesh/gltf/gltf_vertices.h"
 #include "easypbr/scene/mesh.h"
-#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -53,17 +54,13 @@ class MeshBuilder {
         : document_(document),
           materials_(materials),
           variants_(variants),
-          name_(fmt::format("meshes[{}]", index)) {}
+          json_(document.item("meshes", index)),
+          name_(fmt::format("meshes[{}]", index)),
+          reader_(document, name_, value_names()) {}
 
-    GltfMesh build(const Json& json) {
-        const Json* primitives = member(json, "primitives");
-        if (!primitives || !primitives->is_array() || primitives->empty()) fail("has no primitives");
-        out_.name = document_.text(json, "name");
-        for (const Json& primitive : *primitives)
-            if (const Json* attributes = member(primitive, "attributes");
-                attributes && attributes->is_object())
-                if (!has_gltf_splats(primitive)) find_gltf_values(document_, *attributes, value_names_);
-        for (const Json& primitive : *primitives) add(primitive);
+    GltfMesh build() {
+        out_.name = document_.text(json_, "name");
+        for (const Json& primitive : primitives()) add(primitive);
         if (blocks_.empty() && splats_.size() == 1) {
             splats_[0].name = out_.name;
             return {std::move(splats_[0]), {}, {}, {}};
@@ -71,6 +68,11 @@ class MeshBuilder {
         for (MeshData& splats : splats_) {
             splats.name = fmt::format("splats {}", out_.children.size());
             out_.children.emplace_back(std::move(splats));
+        }
+        read_blocks();
+        for (Element& element : elements_) {
+            add_elements(element);
+            element.index = {};
         }
         // Points and lines have one material.
         if (out_.materials.empty() && material_without_faces_) material_index(material_without_faces_);
@@ -80,15 +82,36 @@ class MeshBuilder {
             out_.E =
                 Array2i(Eigen::Map<const Array2i::Dense>(edges_.data(), Eigen::Index(edges_.size() / 2), 2));
         GltfMesh mesh{std::move(out_), {}, {}, std::move(sources_)};
-        read_deformation(json, mesh);
-        leave_out_unused_points(mesh);
+        read_deformation(mesh);
         return mesh;
     }
 
   private:
-    using BlockKey = std::vector<std::optional<size_t>>;
+    /// What of a primitive is left when its block is known.
+    struct Element {
+        Mode mode;
+        std::optional<size_t> material, indices;  ///< numbers in the file
+        size_t block;
+        std::vector<uint32_t> index;  ///< without rows where there are no indices
+    };
 
     [[noreturn]] void fail(const std::string& what) const { document_.fail(name_ + " " + what); }
+
+    const Json& primitives() const {
+        const Json* list = member(json_, "primitives");
+        if (!list || !list->is_array() || list->empty()) fail("has no primitives");
+        return *list;
+    }
+
+    /// Names of application-specific attributes, of all primitives.
+    std::set<std::string> value_names() const {
+        std::set<std::string> names;
+        for (const Json& primitive : primitives())
+            if (const Json* attributes = member(primitive, "attributes");
+                attributes && attributes->is_object() && !has_gltf_splats(primitive))
+                find_gltf_values(document_, *attributes, names);
+        return names;
+    }
 
     void add(const Json& json) {
         const Json* attributes = member(json, "attributes");
@@ -98,123 +121,61 @@ class MeshBuilder {
         const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
         if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
         const auto material = variants_.material_of(json);
-        VertexBlock& block = block_of(json, *attributes, materials_.uv_set(material), compressed);
-        add_elements(json, Mode(mode), material, block);
+        const size_t block = block_of(
+            block_accessors(document_, json, materials_.uv_set(material), reader_.value_names(), compressed));
+        Element element{Mode(mode), material, document_.optional_integer(json, "indices"), block, {}};
+        if (element.indices) element.index = read_indices(document_, *element.indices);
+        const size_t count = position_counts_[block];
+        for (const uint32_t index : element.index)
+            if (index >= count)
+                fail(fmt::format("has index {} of {} vertices (accessors[{}])", index, count,
+                                 *element.indices));
+        elements_.push_back(std::move(element));
     }
 
-    /// `compressed`: the buffer view with the vertices, of which there may be several for the same accessors.
-    VertexBlock& block_of(const Json& primitive, const Json& attributes, int uv_set,
-                          std::optional<size_t> compressed) {
-        const std::string wanted_uv = fmt::format("TEXCOORD_{}", uv_set);
-        const char* uv = member(attributes, wanted_uv.c_str()) ? wanted_uv.c_str() : "TEXCOORD_0";
-        BlockKey key;
-        for (const char* name : {"POSITION", "NORMAL", uv, "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1",
-                                 "WEIGHTS_1", "TANGENT"})
-            key.push_back(document_.optional_integer(attributes, name));
-        for (const std::string& name : value_names_)
-            key.push_back(document_.optional_integer(attributes, name.c_str()));
-        if (const Json* targets = member(primitive, "targets"); targets && targets->is_array())
-            for (const Json& target : *targets)
-                for (const char* name : {"POSITION", "NORMAL"})
-                    key.push_back(document_.optional_integer(target, name));
-        key.push_back(compressed);
-        const auto [found, is_new] = block_index_.try_emplace(key, blocks_.size());
-        if (is_new) blocks_.push_back(read_block(key));
-        return blocks_[found->second];
-    }
-
-    VertexBlock read_block(const BlockKey& key) {
-        VertexBlock block;
-        block.first = vertex_count_;
-        block.V = read_floats(document_, *key[0], 3, 3);
-        const auto read = [&](std::optional<size_t> accessor, int least, int most, ArrayXf::Dense& to) {
-            if (!accessor) return;
-            to = read_floats(document_, *accessor, least, most);
-            if (to.rows() != block.V.rows())
-                fail(fmt::format("has {} positions, but accessors[{}] has {} rows", block.V.rows(), *accessor,
-                                 to.rows()));
-        };
-        read(key[1], 3, 3, block.N);
-        read(key[2], 2, 2, block.UV);
-        read(key[3], 3, 4, block.C);
-        // Section 3.7.2.1 of the specification: without normals tangents are ignored.
-        if (key[1]) read(key[8], 4, 4, block.tangents);
-        for (size_t set : {4, 6}) {
-            if (!key[set] || !key[set + 1]) break;
-            ArrayXf::Dense joints, weights;
-            read(key[set], 4, 4, joints);
-            read(key[set + 1], 4, 4, weights);
-            append_columns(block.joints, joints);
-            append_columns(block.weights, weights);
+    /// Compressed vertices are there only until the next primitive; others are read by read_blocks().
+    size_t block_of(const GltfBlockAccessors& accessors) {
+        const auto [found, is_new] = block_index_.try_emplace(accessors, blocks_.size());
+        if (is_new) {
+            block_accessors_.push_back(&found->first);
+            blocks_.push_back(accessors.compressed ? reader_.read(accessors, nullptr) : VertexBlock());
+            position_counts_.push_back(accessors.compressed
+                                           ? size_t(blocks_.back().row_count)
+                                           : gltf_rows(document_, *accessors.position).count);
         }
-        size_t next = 9;
-        for (const std::string& name : value_names_) {
-            ArrayXf::Dense& values = block.values[name];
-            try {
-                read(key[next++], 1, 4, values);
-            } catch (const FormatError& error) {
-                // The mesh is whole without it.
-                values = {};
-                log_warning(fmt::format("attribute {} is left out: {}", name, error.what()));
-            }
+        return found->second;
+    }
+
+    /// Only what primitives index: other meshes may have the rest of the same accessors.
+    void read_blocks() {
+        std::vector<std::vector<const std::vector<uint32_t>*>> lists(blocks_.size());
+        for (const Element& element : elements_)
+            lists[element.block].push_back(element.indices ? &element.index : nullptr);
+        std::vector<GltfUsedRows> used;
+        for (size_t b = 0; b < blocks_.size(); ++b) {
+            const std::vector<int32_t>* rows = used.emplace_back(position_counts_[b], lists[b]).rows();
+            VertexBlock& block = blocks_[b];
+            if (!block_accessors_[b]->compressed)
+                block = reader_.read(*block_accessors_[b], rows);
+            else if (rows)
+                choose_rows(block, *rows, name_);
+            block.first = vertex_count_;
+            vertex_count_ += block.row_count;
+            if (vertex_count_ > std::numeric_limits<int32_t>::max()) fail("has more than 2^31 vertices");
         }
-        for (size_t target = next; target + 2 < key.size(); target += 2) {
-            read(key[target], 3, 3, block.targets_V.emplace_back());
-            read(key[target + 1], 3, 3, block.targets_N.emplace_back());
-        }
-        tidy(block);
-        block.row_count = block.V.rows();
-        vertex_count_ += block.row_count;
-        if (vertex_count_ > std::numeric_limits<int32_t>::max()) fail("has more than 2^31 vertices");
-        return block;
+        for (Element& element : elements_) used[element.block].renumber(element.index);
     }
 
-    void add_elements(const Json& json, Mode mode, std::optional<size_t> material, VertexBlock& block) {
-        const auto accessor = document_.optional_integer(json, "indices");
-        std::vector<uint32_t> indices;
-        if (accessor) indices = read_indices(document_, *accessor);
-        for (const uint32_t index : indices)
-            if (index >= size_t(block.V.rows()))
-                fail(fmt::format("has index {} of {} vertices (accessors[{}])", index, block.V.rows(),
-                                 *accessor));
-        const size_t count = accessor ? indices.size() : size_t(block.V.rows());
-        const auto index = [&](size_t i) { return accessor ? int32_t(indices[i]) : int32_t(i); };
-        if (mode < Mode::triangles && !material_without_faces_) material_without_faces_ = material;
-        if (mode >= Mode::triangles)
-            add_part(triangle_corners(mode, count, index), material, block);
-        else if (mode != Mode::points)
-            add_lines(mode, count, index, int32_t(block.first));
-        else
-            add_points(accessor ? &indices : nullptr, block);
-    }
-
-    /// All points of a block, or those of its indices.
-    static void add_points(const std::vector<uint32_t>* indices, VertexBlock& block) {
-        if (!indices) block.is_whole = true;
-        if (block.is_whole) return block.points.clear();
-        block.points.resize(size_t(block.V.rows()), 0);
-        for (const uint32_t index : *indices) block.points[index] = 1;
-    }
-
-    /// Of a mesh of points alone those that its primitives have; beside faces and lines none are drawn.
-    void leave_out_unused_points(GltfMesh& mesh) {
-        const auto has_some = [](const VertexBlock& block) { return !block.points.empty(); };
-        if (!faces_.empty() || !edges_.empty() || std::ranges::none_of(blocks_, has_some)) return;
-        std::vector<int32_t> rows;
-        for (const VertexBlock& block : blocks_)
-            for (Eigen::Index i = 0; i < block.row_count; ++i)
-                if (block.points.empty() || block.points[size_t(i)]) rows.push_back(int32_t(block.first + i));
-        if (rows.empty()) fail("has points, but none is in its indices");
-        if (rows.size() == size_t(vertex_count_)) return;
-        choose_vertex_rows(mesh.data, rows);
-        Deformation& deformation = mesh.deformation;
-        deformation.V = rows_of(deformation.V, rows);
-        deformation.N = rows_of(deformation.N, rows);
-        deformation.uv_tangents = rows_of(deformation.uv_tangents, rows);
-        deformation.joints = rows_of(deformation.joints, rows);
-        deformation.weights = rows_of(deformation.weights, rows);
-        for (Array3f& target : deformation.targets_V) target = rows_of(target, rows);
-        for (Array3f& target : deformation.targets_N) target = rows_of(target, rows);
+    void add_elements(const Element& element) {
+        VertexBlock& block = blocks_[element.block];
+        const size_t count = element.indices ? element.index.size() : size_t(block.row_count);
+        const auto index = [&](size_t i) { return element.indices ? int32_t(element.index[i]) : int32_t(i); };
+        const std::optional<size_t> material = element.material;
+        if (element.mode < Mode::triangles && !material_without_faces_) material_without_faces_ = material;
+        if (element.mode >= Mode::triangles)
+            add_part(triangle_corners(element.mode, count, index), material, block);
+        else if (element.mode != Mode::points)
+            add_lines(element.mode, count, index, int32_t(block.first));
     }
 
     void add_part(const std::vector<int32_t>& corners, std::optional<size_t> material, VertexBlock& block) {
@@ -248,12 +209,6 @@ class MeshBuilder {
             edges_.insert(edges_.end(), {first + index(count - 1), first + index(0)});
     }
 
-    static void append_columns(ArrayXf::Dense& to, const ArrayXf::Dense& more) {
-        const Eigen::Index before = to.cols();
-        to.conservativeResize(more.rows(), before + more.cols());
-        to.rightCols(more.cols()) = more;
-    }
-
     /// One column block of all vertices, of(block) of each; rows of blocks that lack it have `fallback`.
     template <class Of>
     ArrayXf::Dense merged_of(float fallback, Of&& of) {
@@ -273,7 +228,7 @@ class MeshBuilder {
         return merged_of(fallback, [&](VertexBlock& block) -> ArrayXf::Dense& { return block.*attribute; });
     }
 
-    void read_deformation(const Json& json, GltfMesh& mesh) {
+    void read_deformation(GltfMesh& mesh) {
         Deformation& out = mesh.deformation;
         out.joints = ArrayXf(merged(&VertexBlock::joints, 0));
         out.weights = ArrayXf(merged(&VertexBlock::weights, 0));
@@ -289,7 +244,7 @@ class MeshBuilder {
             out.targets_V.push_back(V.rows() ? Array3f(V) : Array3f(Array3f::Dense::Zero(vertex_count_, 3)));
             out.targets_N.push_back(N.rows() ? Array3f(N) : Array3f());
         }
-        if (const Json* weights = member(json, "weights"); weights && weights->is_array()) {
+        if (const Json* weights = member(json_, "weights"); weights && weights->is_array()) {
             if (weights->size() != targets)
                 fail(fmt::format("has {} morph targets and {} weights", targets, weights->size()));
             for (const Json& weight : *weights) mesh.weights.push_back(weight.get<float>());
@@ -335,7 +290,7 @@ class MeshBuilder {
             // They are what these factors multiply, a factor of 0.6 as well.
             for (Material& material : out_.materials) material.base_color_given = true;
         }
-        for (const std::string& name : value_names_) {
+        for (const std::string& name : reader_.value_names()) {
             const float missing = name == gltf_label_name       ? -1.0f
                                   : name == gltf_intensity_name ? 0.0f
                                                                 : std::numeric_limits<float>::quiet_NaN();
@@ -348,15 +303,20 @@ class MeshBuilder {
     GltfDocument& document_;
     const GltfMaterials& materials_;
     const GltfVariants& variants_;
+    const Json& json_;
     std::string name_;
+    GltfBlockReader reader_;
     MeshData out_;
+    std::vector<Element> elements_;
+    std::map<GltfBlockAccessors, size_t> block_index_;
+    // One of each for each block.
     std::vector<VertexBlock> blocks_;
+    std::vector<const GltfBlockAccessors*> block_accessors_;  ///< keys of block_index_
+    std::vector<size_t> position_counts_;
     std::vector<MeshData> splats_;  ///< of the primitives that are such
     ArrayXf::Dense none_;           ///< what a block has of a morph target that it lacks
-    std::set<std::string> value_names_;
-    std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;
-    std::vector<std::optional<size_t>> sources_;  ///< of out_.materials
+    std::vector<std::optional<size_t>> sources_;    ///< of out_.materials
     std::optional<size_t> material_without_faces_;  ///< the first of points and lines
     Eigen::Index vertex_count_ = 0;
     std::vector<int32_t> faces_, edges_;
@@ -367,8 +327,7 @@ class MeshBuilder {
 
 GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
                         size_t index) {
-    const Json& json = document.item("meshes", index);
-    return MeshBuilder(document, materials, variants, index).build(json);
+    return MeshBuilder(document, materials, variants, index).build();
 }
 
 }  // namespace easypbr::io

@@ -18,7 +18,8 @@ struct GltfMesh {
 
 /// Triangles, strips and fans become F with a part for each primitive, lines E, points plain vertices.
 /// Splats are the mesh where they are its only primitive, else children of it.
-/// Primitives with the same attributes share their vertices. Without any normals the mesh is drawn flat.
+/// Primitives with the same attributes share their vertices, of which those are read that they index, in the
+/// order of the file. Without any normals the mesh is drawn flat.
 /// Where only some primitives have normals, the faces of the others have vertices of their own with the
 /// normals of the faces. Throws FormatError as load_gltf() does.
 GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,

@@ -79,16 +79,6 @@ void for_each_array(VertexBlock& block, Visit&& visit) {
     for (auto& [name, values] : block.values) visit(values);
 }
 
-/// Replaces a block's vertices by those of the rows.
-void choose_rows(VertexBlock& block, const std::vector<int32_t>& rows, const std::string& name) {
-    uint64_t columns = 0;
-    for_each_array(block, [&](const ArrayXf::Dense& array) { columns += uint64_t(array.cols()); });
-    charge_memory(rows.size() * columns * sizeof(float), name);
-    for_each_array(block, [&](ArrayXf::Dense& array) { array = chosen_rows(array, rows); });
-    block.row_count = Eigen::Index(rows.size());
-    block.points.clear();  // beside faces no points are drawn
-}
-
 bool has_flat_faces(const VertexBlock& block) {
     return block.N.rows() == 0 && !block.triangles.empty();
 }
@@ -122,6 +112,14 @@ void tidy(VertexBlock& block) {
     tidy_tangents(block.tangents);
     flip_v(block.UV);
     encode_colors(block.C);
+}
+
+void choose_rows(VertexBlock& block, const std::vector<int32_t>& rows, const std::string& name) {
+    uint64_t columns = 0;
+    for_each_array(block, [&](const ArrayXf::Dense& array) { columns += uint64_t(array.cols()); });
+    charge_memory(rows.size() * columns * sizeof(float), name);
+    for_each_array(block, [&](ArrayXf::Dense& array) { array = chosen_rows(array, rows); });
+    block.row_count = Eigen::Index(rows.size());
 }
 
 GltfFlatFaces split_flat_faces(std::vector<VertexBlock>& blocks, std::vector<int32_t>& faces,

@@ -17,12 +17,13 @@ struct VertexBlock {
     std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
     GltfValues values;                                 ///< without rows where there are none
     std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
-    std::vector<char> points;  ///< whether a primitive of points has the vertex; empty: all are drawn
-    bool is_whole = false;     ///< a primitive without indices has all vertices
 };
 
 /// Brings what was read into the form that MeshData has: unit normals and tangents, v upwards, sRGB colours.
 void tidy(VertexBlock& block);
+
+/// Replaces a block's vertices by those of the rows. `name` is for messages. Throws as charge_memory() does.
+void choose_rows(VertexBlock& block, const std::vector<int32_t>& rows, const std::string& name);
 
 /// Faces with vertices of their own, and for each vertex of all blocks the one that it was before. Both are
 /// empty where nothing was split.
