@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "easypbr/scene/mesh.h"
 #include "io/gltf_decoded.h"
 
@@ -157,6 +159,30 @@ TEST(GltfPlaced, SaysWhatIsNot) {
         message_at("/extensions/KHR_lights_punctual/lights/9/range", {0, 1}).find("lights[9] does not exist"),
         std::string::npos);
     EXPECT_NE(message_at(std::string(lamp_pointer) + "color", {0, 1}), "accepted");
+}
+
+// Counting from 2 for each of 40,000 lights took minutes.
+TEST(GltfPlaced, ManyLightsOfOneNameAreNumberedInTurn) {
+    GltfBuilder builder = placed();
+    builder.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"name", "L"}, {"type", "point"}},
+                                                                   {{"name", "L 3"}, {"type", "point"}}};
+    Json nodes = {{{"mesh", 0}}, {{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
+    Json roots = {0, 1};
+    constexpr size_t count = 40'000;
+    for (size_t i = 0; i < count; ++i) {
+        roots.push_back(nodes.size());
+        nodes.push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    }
+    builder.json["nodes"] = nodes;
+    builder.json["scenes"][0]["nodes"] = roots;
+    const auto start = std::chrono::steady_clock::now();
+    const auto lights = decode(builder).lights;
+    // About a second of a slow debug build; what is quadratic takes a hundred times as long.
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    EXPECT_EQ(lights.size(), count + 1);
+    // "L 3" is the other light's own name: L, L 2, L 4, ...
+    EXPECT_TRUE(lights.contains("L") && lights.contains("L 2") && lights.contains("L 4"));
+    EXPECT_TRUE(lights.contains(fmt::format("L {}", count + 1)));
 }
 
 }  // namespace easypbr::gltf_placed_test

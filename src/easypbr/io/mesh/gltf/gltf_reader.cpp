@@ -49,13 +49,23 @@ constexpr std::string_view known_extensions[] = {khr_unlit,
                                                  khr_gaussian_splatting,
                                                  khr_splats_as_spz};
 
-/// A name that the map does not have yet.
-template <class Value>
-std::string free_name(const std::map<std::string, Value>& taken, const std::string& name) {
-    std::string free = name;
-    for (int i = 2; taken.count(free); ++i) free = fmt::format("{} {}", name, i);
-    return free;
-}
+/// Names that a map does not have yet: of several of one name the second is "NAME 2".
+class FreeNames {
+  public:
+    template <class Value>
+    std::string free_name(const std::map<std::string, Value>& taken, const std::string& name) {
+        if (!taken.contains(name)) return name;
+        // Names are never given back: all numbers below are taken.
+        int& number = next_number_.try_emplace(name, 2).first->second;
+        std::string free;
+        do free = fmt::format("{} {}", name, number++);
+        while (taken.contains(free));
+        return free;
+    }
+
+  private:
+    std::map<std::string, int> next_number_;
+};
 
 class SceneReader {
   public:
@@ -244,8 +254,8 @@ class SceneReader {
         const auto index = gltf_camera_of_node(document_, json);
         if (!index) return;
         const std::string own = document_.text(json, "name", "");
-        const std::string name =
-            free_name(out_.cameras, own.empty() ? gltf_camera_name(document_, *index, fallback) : own);
+        const std::string name = camera_names_.free_name(
+            out_.cameras, own.empty() ? gltf_camera_name(document_, *index, fallback) : own);
         const AnimatedItem<Camera>& camera = cameras_[*index];
         out_.cameras.emplace(name, camera.value(camera.parameters, T_world_node));
         if (!rig_.animations.empty()) rig_.cameras[*index].users.emplace_back(name, int(node));
@@ -256,7 +266,8 @@ class SceneReader {
                    bool visible) {
         const auto index = gltf_light_of_node(document_, document_.item("nodes", node));
         if (!index) return;
-        const std::string name = free_name(out_.lights, gltf_light_name(document_, *index, fallback));
+        const std::string name =
+            light_names_.free_name(out_.lights, gltf_light_name(document_, *index, fallback));
         Light light = lights_[*index].value(lights_[*index].parameters, T_world_node);
         if (!visible) light.intensity = 0;
         out_.lights.emplace(name, light);
@@ -271,6 +282,7 @@ class SceneReader {
     std::map<std::string, size_t> first_of_;  ///< meshes, by their JSON without names
     std::vector<AnimatedItem<Light>> lights_;
     std::vector<AnimatedItem<Camera>> cameras_;
+    FreeNames light_names_, camera_names_;
     AnimationRig rig_;
     std::vector<bool> visited_;
     LoadedScene out_;
