@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <compare>
 #include <limits>
+#include <map>
+#include <tuple>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
@@ -13,6 +17,7 @@
 #include "easypbr/scene/crease.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::io {
 namespace {
@@ -20,6 +25,39 @@ namespace {
 enum Target { array_buffer = 34962, element_buffer = 34963 };
 enum ComponentType { unsigned_int = 5125, floating = 5126 };
 enum PrimitiveMode { mode_points = 0, mode_lines = 1, mode_triangles = 4 };
+
+/// What a mesh of the file is made of: equal ones are written once. Names are those of the first.
+struct MeshContent {
+    std::vector<uint64_t> revisions;  ///< of the arrays
+    std::vector<std::string> scalars;
+    std::vector<std::array<int, 3>> parts;  ///< first face, count of faces, material
+    std::vector<size_t> materials;          ///< numbers in the file
+    bool is_flat = false;
+    uint64_t rest_shape = 0, rest_shape_faces = 0;  ///< which decide on sharp edges
+
+    auto operator<=>(const MeshContent&) const = default;
+};
+
+/// Equal materials that are written once. The key holds enough of them that few others have the same.
+class MaterialNumbers {
+  public:
+    template <class Add>
+    size_t number(const Material& material, bool transparent_vertices, Add&& add) {
+        const Vec3& color = material.base_color;
+        const Key key{
+            material.name,
+            transparent_vertices,
+            {color[0], color[1], color[2], material.opacity, material.metallic, material.roughness}};
+        auto& same_key = numbers_[key];
+        for (const auto& [known, number] : same_key)
+            if (known == material) return number;
+        return same_key.emplace_back(material, add()).second;
+    }
+
+  private:
+    using Key = std::tuple<std::string, bool, std::array<float, 6>>;
+    std::map<Key, std::vector<std::pair<Material, size_t>>> numbers_;
+};
 
 class GlbBuilder {
   public:
@@ -82,24 +120,43 @@ class GlbBuilder {
         return content_.json["nodes"].size() - 1;
     }
 
-    size_t add_mesh(MeshData data) {
+    size_t add_mesh(const MeshData& data) {
+        const std::vector<size_t> materials = add_materials(data);
+        const auto [found, is_new] = meshes_.try_emplace(content_of(data, materials), meshes_.size());
+        if (is_new) write_mesh(data, materials);
+        return found->second;
+    }
+
+    static MeshContent content_of(const MeshData& data, const std::vector<size_t>& materials) {
+        MeshContent content;
+        content.revisions = array_revisions(data);
+        for (const ScalarArray& scalar : data.scalars) content.scalars.push_back(scalar.name);
+        for (const MeshPart& part : data.parts)
+            content.parts.push_back({part.first_face, part.face_count, part.material});
+        content.materials = materials;
+        content.is_flat = data.style.flat.value_or(false);
+        content.rest_shape = data.rest_shape.V.revision();
+        content.rest_shape_faces = data.rest_shape.F_revision;
+        return content;
+    }
+
+    void write_mesh(MeshData data, const std::vector<size_t>& materials) {
         // A reader shades a file without normals flat.
         if (data.N.empty() && !data.F.empty() && !data.style.flat.value_or(false)) add_drawn_normals(data);
         OrderedJson attributes = add_attributes(data);
         OrderedJson primitives = OrderedJson::array();
-        if (!data.F.empty()) add_parts(data, attributes, primitives);
+        if (!data.F.empty()) add_parts(data, attributes, materials, primitives);
         if (!data.E.empty()) {
             const size_t indices = add_indices(data.E.data(), size_t(data.E.size()));
             primitives.push_back(
                 {{"attributes", attributes}, {"indices", indices}, {"mode", int(mode_lines)}});
-            if (data.F.empty()) add_material(data, primitives.back());
+            if (data.F.empty() && !materials.empty()) primitives.back()["material"] = materials[0];
         }
         if (primitives.empty()) {
             primitives.push_back(points(data, std::move(attributes)));
-            if (data.splats.empty()) add_material(data, primitives.back());
+            if (!materials.empty()) primitives.back()["material"] = materials[0];
         }
         content_.json["meshes"].push_back({{"name", data.name}, {"primitives", std::move(primitives)}});
-        return content_.json["meshes"].size() - 1;
     }
 
     OrderedJson points(const MeshData& data, OrderedJson attributes) {
@@ -129,20 +186,28 @@ class GlbBuilder {
 
     size_t material_index(const MeshData& data, Material material) {
         if (!data.C.empty() && material.has_default_color()) material.base_color.setOnes();
-        return materials_.add(material, has_transparent_colors(data.C));
+        const bool transparent = has_transparent_colors(data.C);
+        return material_numbers_.number(material, transparent,
+                                        [&] { return materials_.add(material, transparent); });
     }
 
-    /// Of points and lines; the default, which draws lines dark, is none.
-    void add_material(const MeshData& data, OrderedJson& primitive) {
-        if (!data.materials.empty() && data.materials[0] != Material())
-            primitive["material"] = material_index(data, data.materials[0]);
-    }
-
-    void add_parts(const MeshData& data, const OrderedJson& attributes, OrderedJson& primitives) {
-        std::vector<size_t> materials;
+    /// Numbers of a mesh's materials: all of faces; one of points and lines, none for the default, which
+    /// draws lines dark.
+    std::vector<size_t> add_materials(const MeshData& data) {
         std::vector<Material> given = data.materials;
-        if (given.empty()) given.emplace_back();
-        for (const Material& material : given) materials.push_back(material_index(data, material));
+        if (!data.F.empty()) {
+            if (given.empty()) given.emplace_back();
+        } else {
+            const bool has_one = data.splats.empty() && !given.empty() && given[0] != Material();
+            given.resize(has_one ? 1 : 0);
+        }
+        std::vector<size_t> numbers;
+        for (const Material& material : given) numbers.push_back(material_index(data, material));
+        return numbers;
+    }
+
+    void add_parts(const MeshData& data, const OrderedJson& attributes, const std::vector<size_t>& materials,
+                   OrderedJson& primitives) {
         std::vector<MeshPart> parts = data.parts;
         if (parts.empty()) parts.push_back({"", 0, int(data.F.rows()), 0});
         for (const MeshPart& part : parts) {
@@ -227,6 +292,8 @@ class GlbBuilder {
     Vec3d origin_ = Vec3d::Zero();
     GlbContent content_;
     GlbMaterials materials_{content_};
+    MaterialNumbers material_numbers_;
+    std::map<MeshContent, size_t> meshes_;  ///< with their numbers in the file
 };
 
 }  // namespace
