@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "easypbr/core/error.h"
@@ -78,6 +79,33 @@ TEST(GltfAnimation, BendsSkins) {
     scene.animations.apply(scene.animations.find("animations[0]"), 1, false);
     const Array3f::Dense expected{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
     EXPECT_LT((mesh.V() - expected).cwiseAbs().maxCoeff(), 1e-6f);
+}
+
+// Twelve joints at z = 0, 1, ..., 11, each with a weight of 1/12: all vertices are lifted by 5.5.
+TEST(GltfAnimation, VerticesFollowAllSetsOfJoints) {
+    GltfBuilder file;
+    nlohmann::json& primitive = file.triangle();
+    nlohmann::json attributes = primitive["attributes"];
+    const size_t weights = file.floats(std::vector<float>(12, 1.0f / 12), 4);
+    for (uint8_t set = 0; set < 3; ++set) {
+        std::vector<uint8_t> joints;
+        for (int i = 0; i < 12; ++i) joints.push_back(uint8_t(4 * set + i % 4));
+        attributes[fmt::format("JOINTS_{}", set)] = file.accessor(joints, 5121, "VEC4", 3);
+        attributes[fmt::format("WEIGHTS_{}", set)] = weights;
+    }
+    file.json["meshes"][0]["primitives"][0]["attributes"] = attributes;
+    file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}};
+    nlohmann::json& joints = file.json["skins"][0]["joints"];
+    file.json["scenes"][0]["nodes"] = {0};
+    for (int k = 0; k < 12; ++k) {
+        file.json["nodes"].push_back({{"translation", {0, 0, k}}});
+        file.json["scenes"][0]["nodes"].push_back(k + 1);
+        joints.push_back(k + 1);
+    }
+    const Mesh mesh = load(file).mesh.children()[0];
+    const Vec3d place = mesh.T_world_mesh() * Vec3d(mesh.V().row(0).transpose().cast<double>());
+    // A sum of twelve rounded weights.
+    EXPECT_NEAR(place.z(), 5.5, 1e-5);
 }
 
 TEST(GltfAnimation, MorphsBySplines) {

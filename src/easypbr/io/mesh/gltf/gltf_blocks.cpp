@@ -32,7 +32,7 @@ GltfBlockAccessors block_accessors(const GltfDocument& document, const Json& pri
     out.color = of("COLOR_0"), out.tangent = of("TANGENT");
     out.uv = of(fmt::format("TEXCOORD_{}", uv_set));
     if (!out.uv) out.uv = of("TEXCOORD_0");
-    for (int set = 0; set < 2; ++set) {
+    for (int set = 0;; ++set) {
         const auto joints = of(fmt::format("JOINTS_{}", set)), weights = of(fmt::format("WEIGHTS_{}", set));
         if (!joints || !weights) break;
         out.influences.push_back({joints, weights});
