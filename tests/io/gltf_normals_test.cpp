@@ -60,6 +60,7 @@ TEST(GltfNormals, AMeshWithoutAnyIsDrawnFlat) {
     EXPECT_TRUE(mesh.style.flat.value_or(false));
 }
 
+// Lines that are the E of the faces, as they are written.
 TEST(GltfNormals, LinesKeepTheirVertices) {
     GltfBuilder builder = folded(true);
     nlohmann::json& primitives = builder.json["meshes"][0]["primitives"];
@@ -69,6 +70,7 @@ TEST(GltfNormals, LinesKeepTheirVertices) {
     primitives.push_back(lines);
     primitives.push_back({{"attributes", primitives[1]["attributes"]}, {"mode", 1}, {"indices", 0}});
     primitives[3]["indices"] = builder.accessor(std::vector<uint32_t>{0, 2}, 5125, "SCALAR", 2);
+    for (const size_t i : {2u, 3u}) primitives[i]["extras"] = {{"EasyPBR:edges_of_faces", true}};
     const MeshData mesh = node(decode(builder));
     ASSERT_EQ(mesh.V.rows(), 4 + 6 + 3);
     ASSERT_EQ(mesh.E.rows(), 2);

@@ -12,6 +12,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/gltf/glb_textures.h"
+#include "easypbr/io/mesh/gltf/gltf_mesh.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
 #include "easypbr/scene/crease.h"
@@ -150,7 +151,10 @@ class GlbBuilder {
             const size_t indices = add_indices(data.E.data(), size_t(data.E.size()));
             primitives.push_back(
                 {{"attributes", attributes}, {"indices", indices}, {"mode", int(mode_lines)}});
-            if (data.F.empty() && !materials.empty()) primitives.back()["material"] = materials[0];
+            if (!data.F.empty())
+                primitives.back()["extras"][gltf_edges_of_faces] = true;
+            else if (!materials.empty())
+                primitives.back()["material"] = materials[0];
         }
         if (primitives.empty()) {
             primitives.push_back(points(data, std::move(attributes)));

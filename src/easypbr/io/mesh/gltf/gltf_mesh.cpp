@@ -47,41 +47,66 @@ std::vector<int32_t> triangle_corners(Mode mode, size_t count, Index&& index) {
     return out;
 }
 
+/// What a mesh draws: it has one kind of primitives.
+enum class Kind { faces, lines, points };
+
+Kind kind_of(Mode mode) {
+    return mode >= Mode::triangles ? Kind::faces : mode == Mode::points ? Kind::points : Kind::lines;
+}
+
+/// Whether a primitive of lines is E of a mesh with faces, as EasyPBR wrote it: faces are drawn without.
+bool has_edges_of_faces(const Json& primitive) {
+    const Json* extras = member(primitive, "extras");
+    return extras && extras->is_object() && extras->contains(gltf_edges_of_faces);
+}
+
+struct Primitive {
+    const Json* json;
+    Mode mode;
+    Kind kind;
+    std::optional<size_t> material;
+};
+
+/// Primitives that are one mesh; lines and points have one material.
+struct PrimitiveGroup {
+    Kind kind;
+    std::vector<Primitive> primitives;
+
+    bool takes(const Primitive& primitive) const {
+        return kind == primitive.kind &&
+               (kind == Kind::faces || primitives.front().material == primitive.material);
+    }
+};
+
+/// Makes a mesh of a group.
 class MeshBuilder {
   public:
-    MeshBuilder(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
-                size_t index)
+    /// `json`: of the whole mesh; `name`: its name, for messages.
+    MeshBuilder(GltfDocument& document, const GltfMaterials& materials, const Json& json, std::string name,
+                const PrimitiveGroup& group)
         : document_(document),
           materials_(materials),
-          variants_(variants),
-          json_(document.item("meshes", index)),
-          name_(fmt::format("meshes[{}]", index)),
+          json_(json),
+          name_(std::move(name)),
+          group_(group),
           reader_(document, name_, value_names()) {}
 
     GltfMesh build() {
-        out_.name = document_.text(json_, "name");
-        for (const Json& primitive : primitives()) add(primitive);
-        if (blocks_.empty() && splats_.size() == 1) {
-            splats_[0].name = out_.name;
-            return {std::move(splats_[0]), {}, {}, {}};
-        }
-        for (MeshData& splats : splats_) {
-            splats.name = fmt::format("splats {}", out_.children.size());
-            out_.children.emplace_back(std::move(splats));
-        }
+        for (const Primitive& primitive : group_.primitives) add(primitive);
         read_blocks();
         for (Element& element : elements_) {
             add_elements(element);
             element.index = {};
         }
-        // Points and lines have one material.
-        if (out_.materials.empty() && material_without_faces_) material_index(material_without_faces_);
+        // Lines and points without a material keep the default, which draws lines dark.
+        if (const auto material = group_.primitives.front().material; group_.kind != Kind::faces && material)
+            material_index(material);
         merge_vertices();
         out_.F = Array3i(Eigen::Map<const Array3i::Dense>(faces_.data(), Eigen::Index(faces_.size() / 3), 3));
         if (!edges_.empty())
             out_.E =
                 Array2i(Eigen::Map<const Array2i::Dense>(edges_.data(), Eigen::Index(edges_.size() / 2), 2));
-        GltfMesh mesh{std::move(out_), {}, {}, std::move(sources_)};
+        GltfMesh mesh{std::move(out_), {}, {}, std::move(sources_), {}};
         read_deformation(mesh);
         return mesh;
     }
@@ -97,33 +122,21 @@ class MeshBuilder {
 
     [[noreturn]] void fail(const std::string& what) const { document_.fail(name_ + " " + what); }
 
-    const Json& primitives() const {
-        const Json* list = member(json_, "primitives");
-        if (!list || !list->is_array() || list->empty()) fail("has no primitives");
-        return *list;
-    }
-
     /// Names of application-specific attributes, of all primitives.
     std::set<std::string> value_names() const {
         std::set<std::string> names;
-        for (const Json& primitive : primitives())
-            if (const Json* attributes = member(primitive, "attributes");
-                attributes && attributes->is_object() && !has_gltf_splats(primitive))
-                find_gltf_values(document_, *attributes, names);
+        for (const Primitive& primitive : group_.primitives)
+            find_gltf_values(document_, primitive.json->at("attributes"), names);
         return names;
     }
 
-    void add(const Json& json) {
-        const Json* attributes = member(json, "attributes");
-        if (!attributes || !member(*attributes, "POSITION")) fail("has a primitive without POSITION");
-        if (has_gltf_splats(json)) return splats_.push_back(read_gltf_splats(document_, json, name_));
+    void add(const Primitive& primitive) {
+        const Json& json = *primitive.json;
         const auto compressed = unpack_draco(document_, json, name_);
-        const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
-        if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
-        const auto material = variants_.material_of(json);
-        const size_t block = block_of(
-            block_accessors(document_, json, materials_.uv_set(material), reader_.value_names(), compressed));
-        Element element{Mode(mode), material, document_.optional_integer(json, "indices"), block, {}};
+        const size_t block = block_of(block_accessors(document_, json, materials_.uv_set(primitive.material),
+                                                      reader_.value_names(), compressed));
+        Element element{
+            primitive.mode, primitive.material, document_.optional_integer(json, "indices"), block, {}};
         if (element.indices) element.index = read_indices(document_, *element.indices);
         const size_t count = position_counts_[block];
         for (const uint32_t index : element.index)
@@ -170,10 +183,8 @@ class MeshBuilder {
         VertexBlock& block = blocks_[element.block];
         const size_t count = element.indices ? element.index.size() : size_t(block.row_count);
         const auto index = [&](size_t i) { return element.indices ? int32_t(element.index[i]) : int32_t(i); };
-        const std::optional<size_t> material = element.material;
-        if (element.mode < Mode::triangles && !material_without_faces_) material_without_faces_ = material;
         if (element.mode >= Mode::triangles)
-            add_part(triangle_corners(element.mode, count, index), material, block);
+            add_part(triangle_corners(element.mode, count, index), element.material, block);
         else if (element.mode != Mode::points)
             add_lines(element.mode, count, index, int32_t(block.first));
     }
@@ -228,12 +239,20 @@ class MeshBuilder {
         return merged_of(fallback, [&](VertexBlock& block) -> ArrayXf::Dense& { return block.*attribute; });
     }
 
+    /// Morph targets of the whole mesh, which its weights are for.
+    size_t target_count() const {
+        size_t count = 0;
+        for (const Json& primitive : json_.at("primitives"))
+            if (const Json* targets = member(primitive, "targets"); targets && targets->is_array())
+                count = std::max(count, targets->size());
+        return count;
+    }
+
     void read_deformation(GltfMesh& mesh) {
         Deformation& out = mesh.deformation;
         out.joints = ArrayXf(merged(&VertexBlock::joints, 0));
         out.weights = ArrayXf(merged(&VertexBlock::weights, 0));
-        size_t targets = 0;
-        for (const VertexBlock& block : blocks_) targets = std::max(targets, block.targets_V.size());
+        const size_t targets = target_count();
         for (size_t k = 0; k < targets; ++k) {
             const auto target = [&](std::vector<ArrayXf::Dense> VertexBlock::*list) {
                 return merged_of(0, [&](VertexBlock& block) -> ArrayXf::Dense& {
@@ -302,9 +321,9 @@ class MeshBuilder {
 
     GltfDocument& document_;
     const GltfMaterials& materials_;
-    const GltfVariants& variants_;
     const Json& json_;
     std::string name_;
+    const PrimitiveGroup& group_;
     GltfBlockReader reader_;
     MeshData out_;
     std::vector<Element> elements_;
@@ -313,21 +332,97 @@ class MeshBuilder {
     std::vector<VertexBlock> blocks_;
     std::vector<const GltfBlockAccessors*> block_accessors_;  ///< keys of block_index_
     std::vector<size_t> position_counts_;
-    std::vector<MeshData> splats_;  ///< of the primitives that are such
-    ArrayXf::Dense none_;           ///< what a block has of a morph target that it lacks
+    ArrayXf::Dense none_;  ///< what a block has of a morph target that it lacks
     std::map<std::optional<size_t>, int> material_index_;
-    std::vector<std::optional<size_t>> sources_;    ///< of out_.materials
-    std::optional<size_t> material_without_faces_;  ///< the first of points and lines
+    std::vector<std::optional<size_t>> sources_;  ///< of out_.materials
     Eigen::Index vertex_count_ = 0;
     std::vector<int32_t> faces_, edges_;
     Array3i flat_F_;  ///< with vertices of their own, as they have no normals in the file
+};
+
+/// Reads a mesh as one for each group of its primitives.
+class MeshReader {
+  public:
+    MeshReader(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
+               size_t index)
+        : document_(document),
+          materials_(materials),
+          variants_(variants),
+          json_(document.item("meshes", index)),
+          name_(fmt::format("meshes[{}]", index)) {}
+
+    GltfMesh read() {
+        const Json* primitives = member(json_, "primitives");
+        if (!primitives || !primitives->is_array() || primitives->empty()) fail("has no primitives");
+        has_faces_ = std::ranges::any_of(*primitives, [&](const Json& primitive) {
+            return document_.optional_integer(primitive, "mode").value_or(size_t(Mode::triangles)) >=
+                   size_t(Mode::triangles);
+        });
+        for (const Json& primitive : *primitives) add(primitive);
+        std::ranges::stable_partition(groups_,
+                                      [](const PrimitiveGroup& group) { return group.kind == Kind::faces; });
+        const std::string name = document_.text(json_, "name");
+        if (groups_.empty() && splats_.size() == 1) {
+            splats_[0].data.name = name;
+            return std::move(splats_[0]);
+        }
+        GltfMesh mesh;
+        if (!groups_.empty()) mesh = build(groups_[0]);
+        mesh.data.name = name;
+        for (GltfMesh& splats : splats_) add_child(mesh, "splats", std::move(splats));
+        for (size_t i = 1; i < groups_.size(); ++i)
+            add_child(mesh, groups_[i].kind == Kind::lines ? "lines" : "points", build(groups_[i]));
+        return mesh;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const { document_.fail(name_ + " " + what); }
+
+    void add(const Json& json) {
+        const Json* attributes = member(json, "attributes");
+        if (!attributes || !member(*attributes, "POSITION")) fail("has a primitive without POSITION");
+        if (has_gltf_splats(json)) {
+            splats_.push_back({read_gltf_splats(document_, json, name_), {}, {}, {}, {}});
+            return;
+        }
+        const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
+        if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
+        const bool is_part_of_faces =
+            kind_of(Mode(mode)) == Kind::lines && has_faces_ && has_edges_of_faces(json);
+        const Primitive primitive{&json, Mode(mode), is_part_of_faces ? Kind::faces : kind_of(Mode(mode)),
+                                  variants_.material_of(json)};
+        const auto group = std::ranges::find_if(
+            groups_, [&](const PrimitiveGroup& other) { return other.takes(primitive); });
+        if (group != groups_.end())
+            group->primitives.push_back(primitive);
+        else
+            groups_.push_back({primitive.kind, {primitive}});
+    }
+
+    GltfMesh build(const PrimitiveGroup& group) {
+        return MeshBuilder(document_, materials_, json_, name_, group).build();
+    }
+
+    static void add_child(GltfMesh& mesh, const char* what, GltfMesh child) {
+        child.data.name = fmt::format("{} {}", what, mesh.children.size());
+        mesh.children.push_back(std::move(child));
+    }
+
+    GltfDocument& document_;
+    const GltfMaterials& materials_;
+    const GltfVariants& variants_;
+    const Json& json_;
+    std::string name_;
+    bool has_faces_ = false;
+    std::vector<PrimitiveGroup> groups_;
+    std::vector<GltfMesh> splats_;
 };
 
 }  // namespace
 
 GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
                         size_t index) {
-    return MeshBuilder(document, materials, variants, index).build();
+    return MeshReader(document, materials, variants, index).read();
 }
 
 }  // namespace easypbr::io

@@ -9,19 +9,24 @@
 
 namespace easypbr::io {
 
+/// In the extras of a primitive of lines that EasyPBR writes beside faces: it is their E, which is not drawn.
+inline constexpr const char* gltf_edges_of_faces = "EasyPBR:edges_of_faces";
+
 struct GltfMesh {
     MeshData data;
     Deformation deformation;                       ///< empty without joints and morph targets
     std::vector<float> weights;                    ///< of the morph targets at rest
     std::vector<std::optional<size_t>> materials;  ///< of the file, one for each of data's
+    std::vector<GltfMesh> children;                ///< which data does not have yet: each node has its own
 };
 
 /// Triangles, strips and fans become F with a part for each primitive, lines E, points plain vertices.
-/// Splats are the mesh where they are its only primitive, else children of it.
-/// Primitives with the same attributes share their vertices, of which those are read that they index, in the
-/// order of the file. Without any normals the mesh is drawn flat.
-/// Where only some primitives have normals, the faces of the others have vertices of their own with the
-/// normals of the faces. Throws FormatError as load_gltf() does.
+/// A mesh draws faces, or lines or points of one material: others of its primitives are children of it, where
+/// there are faces all lines and points, but for lines marked by gltf_edges_of_faces. Splats are the mesh
+/// where they are its only primitive, else children. Primitives with the same attributes share their
+/// vertices, of which those are read that they index, in the order of the file. Without any normals the mesh
+/// is drawn flat. Where only some primitives have normals, the faces of the others have vertices of their own
+/// with the normals of the faces. Throws FormatError as load_gltf() does.
 GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
                         size_t index);
 

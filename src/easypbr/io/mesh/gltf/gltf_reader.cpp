@@ -160,11 +160,15 @@ class SceneReader {
         visited_[index] = true;
 
         const auto mesh = document_.optional_integer(json, "mesh");
-        MeshData data = mesh ? mesh_of(*mesh).data : MeshData();
+        const GltfMesh* source = mesh ? &mesh_of(*mesh) : nullptr;
+        MeshData data = source ? source->data : MeshData();
         data.name =
             document_.text(json, "name", data.name.empty() ? fmt::format("node {}", index) : data.name);
         const auto copies = mesh ? read_gltf_instances(document_, json, index) : std::nullopt;
-        if (copies) data = copied(data, *copies);
+        if (copies)
+            data = copied(*source, data.name, *copies);
+        else if (source)
+            add_children(*source, data);
         if (!is_visible(json)) data.style.visible = false;
         const Visibility visibility = std::max(of_parent, visibility_of(index));
         data.T_parent_mesh = pose_of(index);
@@ -177,9 +181,9 @@ class SceneReader {
                 data.children.push_back(*below);
         if (!mesh && data.children.empty()) return std::nullopt;
         const Mesh node(std::move(data));
-        if (!rig_.nodes.empty()) animate(index, json, node, copies ? std::nullopt : mesh);
+        if (!rig_.nodes.empty()) animate(index, json, node, copies ? nullptr : source);
         if (!rig_.animations.empty() && copies)
-            for (const Mesh& copy : node.children()) animate_materials(*mesh, copy);
+            for (size_t i = 0; i < copies->size(); ++i) animate_materials(*source, node.children()[i]);
         return node;
     }
 
@@ -195,38 +199,68 @@ class SceneReader {
         return changes ? Visibility::hidden_at_rest : Visibility::hidden;
     }
 
-    /// A mesh without vertices, whose children are copies of `data`; they share its arrays.
-    static MeshData copied(const MeshData& data, const std::vector<Eigen::Affine3d>& poses) {
+    /// Handles of its own, which share the arrays.
+    static void add_children(const GltfMesh& source, MeshData& data) {
+        for (const GltfMesh& child : source.children) data.children.emplace_back(child.data);
+    }
+
+    /// A mesh without vertices, whose children are copies of a mesh; they share its arrays.
+    static MeshData copied(const GltfMesh& source, const std::string& name,
+                           const std::vector<Eigen::Affine3d>& poses) {
         MeshData out;
-        out.name = data.name;
+        out.name = name;
         for (const Eigen::Affine3d& pose : poses) {
-            MeshData copy = data;
-            copy.name = fmt::format("{} {}", data.name, out.children.size());
+            MeshData copy = source.data;
+            copy.name = fmt::format("{} {}", name, out.children.size());
             copy.T_parent_mesh = pose;
+            add_children(source, copy);
             out.children.emplace_back(std::move(copy));
         }
         return out;
     }
 
-    /// Tells the animations, and the rest pose, which mesh is the node's.
-    void animate(size_t index, const Json& json, const Mesh& mesh, std::optional<size_t> mesh_index) {
+    /// Tells the animations, and the rest pose, which mesh is the node's. `source`: what it was read from.
+    void animate(size_t index, const Json& json, const Mesh& mesh, const GltfMesh* source) {
         AnimationNode& node = rig_.nodes[index];
         node.mesh = mesh;
-        if (!mesh_index) return;
-        animate_materials(*mesh_index, mesh);
-        const GltfMesh& source = mesh_of(*mesh_index);
-        node.deformation = source.deformation;
-        node.weights = source.weights;
-        if (const auto weights = document_.numbers(json, "weights", source.weights.size()))
+        if (!source) return;
+        animate_materials(*source, mesh);
+        node.deformation = source->deformation;
+        node.weights = source->weights;
+        if (const auto weights = document_.numbers(json, "weights", source->weights.size()))
             node.weights.assign(weights->begin(), weights->end());
+        for (size_t i = 0; i < source->children.size(); ++i)
+            if (const Deformation& deformation = source->children[i].deformation; !deformation.empty())
+                animate_part(index, mesh.children()[i], deformation);
     }
 
-    /// Tells the animations which materials of a mesh are those that they change.
-    void animate_materials(size_t mesh_index, const Mesh& mesh) {
-        const auto& sources = mesh_of(mesh_index).materials;
-        for (size_t place = 0; place < sources.size(); ++place)
-            if (const auto animated = sources[place] ? pointers_.animated(*sources[place]) : std::nullopt)
+    /// The same of a part of a node's mesh: it follows the node's joints, and its weights as they change.
+    void animate_part(size_t of, const Mesh& part, const Deformation& deformation) {
+        const int number = int(rig_.nodes.size());
+        AnimationNode node;
+        node.parent = int(of);
+        node.mesh = part;
+        node.skin = rig_.nodes[of].skin;
+        node.weights = rig_.nodes[of].weights;
+        node.deformation = deformation;
+        rig_.nodes.push_back(std::move(node));
+        for (Animation& animation : rig_.animations)
+            for (size_t i = animation.channels.size(); i-- > 0;) {
+                AnimationChannel channel = animation.channels[i];
+                if (channel.property != AnimatedProperty::weights || channel.node != int(of)) continue;
+                channel.node = number;
+                animation.channels.push_back(std::move(channel));
+            }
+    }
+
+    /// Tells the animations which materials of a mesh, and of its children, are those that they change.
+    void animate_materials(const GltfMesh& source, const Mesh& mesh) {
+        for (size_t place = 0; place < source.materials.size(); ++place)
+            if (const auto animated =
+                    source.materials[place] ? pointers_.animated(*source.materials[place]) : std::nullopt)
                 rig_.materials[*animated].users.emplace_back(mesh, place);
+        for (size_t i = 0; i < source.children.size(); ++i)
+            animate_materials(source.children[i], mesh.children()[i]);
     }
 
     const GltfMesh& mesh_of(size_t index) {
