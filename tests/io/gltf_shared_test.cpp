@@ -144,4 +144,21 @@ TEST(GltfShared, RowsThatAreMissingAreABadFile) {
     EXPECT_NE(message_of(file).find("has 8 positions, but accessors[1] has 4 rows"), std::string::npos);
 }
 
+// float32 has all whole numbers up to 2^24 = 16777216, and not the next one.
+TEST(GltfShared, AWarningNamesIdsThatFloat32Merges) {
+    const auto said = [](uint32_t first) {
+        GltfBuilder file;
+        const std::vector<uint32_t> ids = {first, first + 1, first + 2};
+        file.triangle();
+        const size_t values = file.accessor(ids, 5125, "SCALAR", 3);
+        file.json["meshes"][0]["primitives"][0]["attributes"]["_ID"] = values;
+        const LogCapture log;
+        decode(file);
+        return log.text;
+    };
+    EXPECT_NE(said(16777216).find("scalars 'ID'"), std::string::npos) << said(16777216);
+    EXPECT_NE(said(16777216).find("holds 16777216 and 16777217 as one number"), std::string::npos);
+    EXPECT_EQ(said(16777214), "");
+}
+
 }  // namespace easypbr::gltf_shared_test

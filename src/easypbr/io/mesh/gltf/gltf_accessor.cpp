@@ -15,6 +15,7 @@ namespace easypbr::io {
 namespace {
 
 constexpr size_t accessor_grain = 1 << 15;
+constexpr size_t uint32_type = 5125;  ///< the only one that float32 does not have all values of
 /// Rows of an accessor that names no buffer: nothing in the file bears its size out.
 constexpr size_t most_rows_without_data = size_t(1) << 24;
 
@@ -41,11 +42,11 @@ T load(const std::byte* from) {
     return value;
 }
 
-template <class T>
-float as_float(T value, bool normalized) {
-    if constexpr (std::is_floating_point_v<T>) return value;
-    if (!normalized) return float(value);
-    return std::max(float(double(value) / double(std::numeric_limits<T>::max())), -1.0f);
+template <class Real, class T>
+Real as_real(T value, bool normalized) {
+    if constexpr (std::is_floating_point_v<T>) return Real(value);
+    if (!normalized) return Real(value);
+    return std::max(Real(double(value) / double(std::numeric_limits<T>::max())), Real(-1));
 }
 
 int components_of(const std::string& type) {
@@ -146,10 +147,14 @@ class Accessor {
     const Json& json_;
 };
 
-void fill_row(const Accessor& accessor, const std::byte* from, float* to) {
+template <class Real>
+using DenseRows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+template <class Real>
+void fill_row(const Accessor& accessor, const std::byte* from, Real* to) {
     with_component(accessor.type, [&]<class T>(T) {
         for (int c = 0; c < accessor.components; ++c)
-            to[c] = as_float(load<T>(from + size_t(c) * sizeof(T)), accessor.normalized);
+            to[c] = as_real<Real>(load<T>(from + size_t(c) * sizeof(T)), accessor.normalized);
     });
 }
 
@@ -161,8 +166,9 @@ std::optional<size_t> place_among(size_t row, const std::vector<int32_t>* rows) 
     return size_t(found - rows->begin());
 }
 
+template <class Real>
 void apply_sparse(GltfDocument& document, const Accessor& accessor, const std::vector<int32_t>* rows,
-                  ArrayXf::Dense& out) {
+                  DenseRows<Real>& out) {
     const Json& sparse = *accessor.sparse();
     const size_t count = document.integer(sparse, "count");
     const Json* values = member(sparse, "values");
@@ -174,6 +180,31 @@ void apply_sparse(GltfDocument& document, const Accessor& accessor, const std::v
     for (size_t i = 0; i < count; ++i)
         if (const auto place = place_among(where[i], rows))
             fill_row(accessor, from.data + i * from.stride, out.row(Eigen::Index(*place)).data());
+}
+
+/// The rows, or those that are named.
+template <class Real>
+DenseRows<Real> read_rows(GltfDocument& document, const Accessor& accessor,
+                          const std::vector<int32_t>* rows) {
+    if (rows && !rows->empty() && size_t(rows->back()) >= accessor.count)
+        accessor.fail(fmt::format("has no row {}", rows->back()));
+    const size_t count = rows ? rows->size() : accessor.count;
+    accessor.charge(count, sizeof(Real));
+    DenseRows<Real> out(Eigen::Index(count), accessor.components);
+    if (!accessor.rows.data)
+        out.setZero();
+    else
+        with_component(accessor.type, [&]<class T>(T) {
+            parallel_for(count, accessor_grain, [&](size_t i) {
+                const size_t row = rows ? size_t((*rows)[i]) : i;
+                const std::byte* from = accessor.rows.data + row * accessor.rows.stride;
+                Real* to = out.data() + i * size_t(accessor.components);
+                for (int c = 0; c < accessor.components; ++c)
+                    to[c] = as_real<Real>(load<T>(from + size_t(c) * sizeof(T)), accessor.normalized);
+            });
+        });
+    if (accessor.sparse()) apply_sparse(document, accessor, rows, out);
+    return out;
 }
 
 }  // namespace
@@ -200,25 +231,20 @@ ArrayXf::Dense read_floats(GltfDocument& document, size_t index, int least, int 
     const Accessor accessor(document, index);
     if (accessor.components < least || accessor.components > most)
         accessor.fail(fmt::format("has {} components, expected {} to {}", accessor.components, least, most));
-    if (rows && !rows->empty() && size_t(rows->back()) >= accessor.count)
-        accessor.fail(fmt::format("has no row {}", rows->back()));
-    const size_t count = rows ? rows->size() : accessor.count;
-    accessor.charge(count, sizeof(float));
-    ArrayXf::Dense out(Eigen::Index(count), accessor.components);
-    if (!accessor.rows.data)
-        out.setZero();
-    else
-        with_component(accessor.type, [&]<class T>(T) {
-            parallel_for(count, accessor_grain, [&](size_t i) {
-                const size_t row = rows ? size_t((*rows)[i]) : i;
-                const std::byte* from = accessor.rows.data + row * accessor.rows.stride;
-                float* to = out.data() + i * size_t(accessor.components);
-                for (int c = 0; c < accessor.components; ++c)
-                    to[c] = as_float(load<T>(from + size_t(c) * sizeof(T)), accessor.normalized);
-            });
-        });
-    if (accessor.sparse()) apply_sparse(document, accessor, rows, out);
-    return out;
+    return read_rows<float>(document, accessor, rows);
+}
+
+std::vector<RoundingCounts> gltf_rounding(GltfDocument& document, size_t index,
+                                          const std::vector<int32_t>* rows) {
+    const Accessor accessor(document, index);
+    if (accessor.type != uint32_type) return {};
+    const DenseRows<double> values = read_rows<double>(document, accessor, rows);
+    std::vector<RoundingCounts> counts;
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+        const Eigen::VectorXd one = values.col(column);
+        counts.push_back(rounding_of({one.data(), size_t(one.size())}));
+    }
+    return counts;
 }
 
 std::vector<uint32_t> read_indices(GltfDocument& document, size_t index) {

@@ -6,6 +6,7 @@
 
 #include "easypbr/io/mesh/gltf/gltf_document.h"
 #include "easypbr/scene/array.h"
+#include "easypbr/scene/rounding.h"
 
 namespace easypbr::io {
 
@@ -25,6 +26,11 @@ GltfRows gltf_rows(const GltfDocument& document, size_t accessor);
 /// components lies in [least, most], all bytes lie in the buffer and the rows are there.
 ArrayXf::Dense read_floats(GltfDocument& document, size_t accessor, int least, int most,
                            const std::vector<int32_t>* rows = nullptr);
+
+/// What float32 makes of each column of the rows that read_floats() reads; empty where it has all values of
+/// the type. Throws as read_floats() does.
+std::vector<RoundingCounts> gltf_rounding(GltfDocument& document, size_t accessor,
+                                          const std::vector<int32_t>* rows = nullptr);
 
 /// Vertex indices. Throws FormatError unless it is a scalar of an unsigned integer type.
 std::vector<uint32_t> read_indices(GltfDocument& document, size_t accessor);

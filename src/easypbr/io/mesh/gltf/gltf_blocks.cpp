@@ -98,8 +98,14 @@ void GltfBlockReader::read_values(const GltfBlockAccessors& accessors, const Ver
     size_t next = 0;
     for (const std::string& name : value_names_) {
         ArrayXf::Dense& read = values[name];
+        const std::optional<size_t> accessor = accessors.values[next++];
+        if (!accessor) continue;
         try {
-            vertices.read(accessors.values[next++], 1, most_attribute_columns, read);
+            vertices.read(accessor, 1, most_attribute_columns, read);
+            const auto counts = gltf_rounding(document_, *accessor, vertices.rows);
+            std::vector<RoundingCounts>& all = rounding_[name];
+            if (all.size() < counts.size()) all.resize(counts.size());
+            for (size_t i = 0; i < counts.size(); ++i) all[i].add(counts[i]);
         } catch (const FormatError& error) {
             // The mesh is whole without it.
             read = {};

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <compare>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -47,6 +48,12 @@ class GltfBlockReader {
     /// left out with a warning.
     VertexBlock read(const GltfBlockAccessors& accessors, const std::vector<int32_t>* rows);
 
+    /// What float32 made of the columns of an attribute in all that was read; empty where it has all values
+    /// of its types.
+    const std::vector<RoundingCounts>& rounding(const std::string& value_name) {
+        return rounding_[value_name];
+    }
+
   private:
     struct Vertices;
 
@@ -55,6 +62,7 @@ class GltfBlockReader {
     GltfDocument& document_;
     std::string name_;
     std::set<std::string> value_names_;
+    std::map<std::string, std::vector<RoundingCounts>> rounding_;
 };
 
 }  // namespace easypbr::io

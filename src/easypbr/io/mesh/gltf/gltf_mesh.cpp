@@ -315,7 +315,7 @@ class MeshBuilder {
                                                                 : std::numeric_limits<float>::quiet_NaN();
             const ArrayXf::Dense values = merged_of(
                 missing, [&](VertexBlock& block) -> ArrayXf::Dense& { return block.values.at(name); });
-            if (values.rows()) add_gltf_values(name, values, out_);
+            if (values.rows()) add_gltf_values(name, values, reader_.rounding(name), document_.path(), out_);
         }
     }
 

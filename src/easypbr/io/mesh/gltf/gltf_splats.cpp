@@ -59,7 +59,10 @@ class SplatPrimitiveReader {
         std::set<std::string> names;
         find_gltf_values(document_, attributes_, names);
         for (const std::string& name : names)
-            if (count_ > 0) add_gltf_values(name, require(name, 1, 4), data);
+            if (count_ > 0)
+                add_gltf_values(name, require(name, 1, 4),
+                                gltf_rounding(document_, document_.integer(attributes_, name.c_str())),
+                                document_.path(), data);
         return data;
     }
 

@@ -77,17 +77,22 @@ void find_gltf_values(const GltfDocument& document, const Json& attributes, std:
     }
 }
 
-void add_gltf_values(const std::string& attribute, const ArrayXf::Dense& values, MeshData& data) {
+void add_gltf_values(const std::string& attribute, const ArrayXf::Dense& values,
+                     const std::vector<RoundingCounts>& rounding, const std::filesystem::path& path,
+                     MeshData& data) {
     if (attribute == gltf_label_name && data.L.empty() && are_labels(values)) {
         data.L = Array1i::Dense(values.col(0).cast<int32_t>());
     } else if (attribute == gltf_intensity_name && values.cols() == 1) {
         data.I = Array1f::Dense(values.col(0));
+        if (!rounding.empty()) warn_of_rounded_intensities(path.string(), rounding[0]);
     } else {
         const std::string name = attribute.substr(1);
-        for (Eigen::Index i = 0; i < values.cols(); ++i)
-            data.scalars.push_back(
-                {free_scalar_name(values.cols() == 1 ? name : fmt::format("{}_{}", name, i), data),
-                 Array1f::Dense(values.col(i)), true});
+        for (Eigen::Index i = 0; i < values.cols(); ++i) {
+            const std::string own = values.cols() == 1 ? name : fmt::format("{}_{}", name, i);
+            data.scalars.push_back({free_scalar_name(own, data), Array1f::Dense(values.col(i)), true});
+            if (size_t(i) < rounding.size())
+                warn_of_rounding(path.string(), data.scalars.back().name, rounding[size_t(i)]);
+        }
     }
 }
 

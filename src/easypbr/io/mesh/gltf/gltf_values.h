@@ -2,6 +2,7 @@
 // with "_".
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "easypbr/io/mesh/gltf/gltf_document.h"
 #include "easypbr/scene/mesh_data.h"
+#include "easypbr/scene/rounding.h"
 
 namespace easypbr::io {
 
@@ -27,7 +29,10 @@ std::vector<std::string> left_out_of_gltf(const MeshData& data);
 void find_gltf_values(const GltfDocument& document, const Json& attributes, std::set<std::string>& names);
 
 /// Makes values of the vertices labels, intensities or scalars, by the attribute's name. Scalars of files do
-/// not colour the mesh unless asked to.
-void add_gltf_values(const std::string& attribute, const ArrayXf::Dense& values, MeshData& data);
+/// not colour the mesh unless asked to. `rounding`: what float32 made of each column, or empty; a warning
+/// that begins with `path` names scalars and intensities of which it takes what tells them apart.
+void add_gltf_values(const std::string& attribute, const ArrayXf::Dense& values,
+                     const std::vector<RoundingCounts>& rounding, const std::filesystem::path& path,
+                     MeshData& data);
 
 }  // namespace easypbr::io
