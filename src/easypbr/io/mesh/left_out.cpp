@@ -7,7 +7,6 @@
 #include <set>
 
 #include "easypbr/core/color.h"
-#include "easypbr/io/mesh/gltf/glb_textures.h"
 #include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/scene/material_table.h"
 
@@ -160,7 +159,6 @@ std::vector<std::string> left_out(const MeshData& mesh, const std::string& exten
         add_materials(mesh, properties_of_obj, names);
     else if (extension != "glb" && mesh.splats.empty())
         add_materials(mesh, extension == "ply" ? properties_of_ply(mesh) : Properties{}, names);
-    if (extension == "glb") std::ranges::move(mappings_left_out_of_gltf(mesh), std::back_inserter(names));
     if (const TextureMapping* mapping = texture_mapping(mesh, extension))
         std::ranges::move(left_out_mappings(*mapping, mesh), std::back_inserter(names));
     add_shaders(mesh, names);

@@ -19,6 +19,7 @@
 #include "easypbr/io/mesh/cloud_writers.h"
 #include "easypbr/io/mesh/content_format.h"
 #include "easypbr/io/mesh/file_scene.h"
+#include "easypbr/io/mesh/gltf/glb_textures.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/gltf/gltf_values.h"
@@ -224,6 +225,7 @@ void save(const Mesh& mesh, const std::vector<std::string>& beside, const fs::pa
         for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
             std::vector<std::string> names = left_out_of_gltf(*data);
             std::ranges::move(left_out(*data, extension), std::back_inserter(names));
+            std::ranges::move(mappings_left_out_of_gltf(*data), std::back_inserter(names));
             warn_of_left_out(names, path, data->name);
         });
         return save_glb(mesh, path);
