@@ -350,5 +350,54 @@ TEST(PathSurfaces, LargeDiscsThrowRoundShadows) {
         }
 }
 
+/// A floor of discs of radius 0.05 at every 0.05, from -1 to 1, and one more of another radius beside it.
+Mesh floor_of_discs(float other) {
+    constexpr int side = 41;
+    constexpr float radius = 0.05f;
+    Array3f::Dense V(side * side + 1, 3), N(side * side + 1, 3), T(side * side + 1, 3);
+    for (int i = 0; i < side * side; ++i)
+        V.row(i) =
+            Eigen::RowVector3f(radius * float(i % side - side / 2), radius * float(i / side - side / 2), 0);
+    V.row(side * side) << -4, 0, 0;
+    for (int i = 0; i <= side * side; ++i) {
+        N.row(i) << 0, 0, 1;
+        T.row(i) << (i < side * side ? radius : other), 0, 0;
+    }
+    MeshData data;
+    data.V = Array3f(V);
+    data.N = Array3f(N);
+    data.T = Array3f(T);
+    data.B = Array1f(Array1f::Dense(T.col(0)));
+    data.style.mode = DrawMode::surfels;
+    return Mesh(data);
+}
+
+// Rays that leave a disc start beyond its neighbours, however large others of its mesh are: the plate, 0.25
+// above the floor, keeps its shadow, which the light along (2, 0, -1) throws 0.5 beside it, into the middle
+// of the picture. The open floor beside the shadow gets 0.5 pi cos(light) / pi = 0.5 / sqrt(5). 0.01: colours
+// of 16 bits, and what the dark plate reflects.
+TEST(PathSurfaces, OneLargeDiscLeavesShadowsOfOthers) {
+    Material dark = matt(0);
+    dark.specular = 0;
+    for (const float other : {0.05f, 0.4f, 2.0f}) {
+        Mesh plate = facing_square(0.25f, dark);
+        plate.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-0.5, 0, 0.25)));
+        Material m = matt(0.5f);
+        m.specular = 0;
+        Mesh floor = floor_of_discs(other);
+        floor.set_material(m);
+        Scene scene;
+        scene.show(floor, "floor");
+        scene.show(plate, "plate");
+        shine(scene, Vec3(2, 0, -1).normalized());
+        app::Session session = path_session(scene, 16);
+        look_from(session, Vec3d(0, 0, 4), 10);
+        const Image image = render_linear(session, 4);
+        // Pixels are 0.044 wide: these are at 0.02 and 0.33.
+        EXPECT_EQ(image.at<float>(8, 8)[0], 0) << other;
+        EXPECT_NEAR(image.at<float>(15, 8)[0], 0.5 / std::sqrt(5.0), 0.01) << other;
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::path_surfaces_test

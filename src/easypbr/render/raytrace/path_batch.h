@@ -209,7 +209,7 @@ struct PathBatch {
     PathVectors<3> normal;     ///< interpolated and mapped
     PathVectors<3> face;       ///< of the element itself, towards where the path comes from
     PathVectors<3> view;       ///< unit, back along the path
-    std::vector<float> reach;  ///< RayScene::reach() of the surfaces
+    std::vector<float> reach;  ///< RayScene::reach() of the elements
     std::vector<SurfacePlace> on;
     PathVectors<3> albedo;
     PathVectors<2> parameters;  ///< metallic, roughness

@@ -411,7 +411,7 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
     to.normal.set(at, surfaces.normal.at(i));
     to.face.set(at, surfaces.face.at(i));
     to.view.set(at, -hit.direction);
-    to.reach[at] = scene.reach(hit.hit.surface);
+    to.reach[at] = scene.reach(hit.hit.on());
     to.on[at] = hit.hit.on();
     to.albedo.set(at, surfaces.albedo.at(i));
     to.parameters.set(at, surfaces.parameters.at(i));

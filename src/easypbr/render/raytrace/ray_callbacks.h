@@ -70,6 +70,7 @@ struct RayElement {
     int triangles = 1;                            ///< of each
     int faces = 0;                                ///< of a mesh; 0: the elements are no faces
     const std::vector<Vec3>* vertices = nullptr;  ///< of faces
+    std::vector<float> reaches = {};              ///< of polygons: how far each reaches around its vertex
     const RayGaussians* gaussians = nullptr;
     float unit = 1;                              ///< RayScene::unit()
     Mat3 world_from_normals = Mat3::Identity();  ///< of faces: turns normals of the mesh, not to unit length

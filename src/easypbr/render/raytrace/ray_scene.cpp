@@ -128,18 +128,23 @@ struct RayScene::Scene final : RayGeometry {
             tree.buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, count * n);
         const auto F = tree.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
                                                             count * triangles);
+        RayElement element{&item, 0, int(triangles)};
+        element.reaches.resize(count);
         parallel_for(count, 1 << 10, [&](size_t i) {
             std::array<Vec3d, size_t(most_corners)> places;
             polygon(Eigen::Index(i), std::span(places.data(), n));
+            const Vec3d vertex = item.mesh().V.row(Eigen::Index(i)).transpose().cast<double>();
             for (size_t c = 0; c < n; ++c) {
                 const Vec3 p = (T * places[c]).cast<float>();
                 V[i * n + c] = {p.x(), p.y(), p.z()};
+                const auto reach = float((T.linear() * (places[c] - vertex)).norm());
+                element.reaches[i] = std::max(element.reaches[i], reach);
             }
             const auto first = uint32_t(i * n);
             for (uint32_t c = 0; c < triangles; ++c)
                 F[i * triangles + c] = {first, first + c + 1, first + c + 2};
         });
-        attach(geometry, {&item, 0, int(triangles)});
+        attach(geometry, element);
     }
 
     void add_gaussians(const DrawItem& item,
@@ -235,8 +240,23 @@ const HitSurface& RayScene::surface(int index) const {
     return *scene_->surfaces[size_t(index)];
 }
 
-float RayScene::reach(int surface) const {
-    return surface < 0 ? 0 : scene_->reaches[size_t(surface)];
+float RayScene::reach(const SurfacePlace& on) const {
+    if (on.surface < 0) return 0;
+    const float most = scene_->reaches[size_t(on.surface)];
+    const std::vector<float>& own = scene_->elements[size_t(on.surface)]->reaches;
+    return own.empty() ? most : std::min(most, own[size_t(on.element)]);
+}
+
+float RayScene::reach_beside(const Place& place) const {
+    if (!(reach_ > 0)) return 0;
+    float nearest = reach_, found = reach_;
+    for (const Vec3& way : {place.view, Vec3(-place.view)}) {
+        const auto hit = first_hit({place.position, way, nearest}, Transmissive::layers, false);
+        if (!hit || !(hit->distance <= reach(hit->on()))) continue;
+        nearest = hit->distance;
+        found = reach(hit->on());
+    }
+    return found;
 }
 
 int RayScene::surface_count() const {
@@ -381,9 +401,9 @@ RaySegment ray_to(const RayScene::Place& place) {
 RayScene::Seen RayScene::seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
                                  const SurfacePlace& on) const {
     const Vec3 position = ray.from + ray.direction * distance;
-    if (has_normal(on, face, place.normal)) return {position, face, place.normal, reach(on.surface), on};
+    if (has_normal(on, face, place.normal)) return {position, face, place.normal, reach(on), on};
     const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
-    return stands_before ? Seen{position, face, face, reach(on.surface), {}} : nothing_at(place);
+    return stands_before ? Seen{position, face, face, reach(on), {}} : nothing_at(place);
 }
 
 RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {

@@ -104,9 +104,9 @@ class RayScene {
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }
     double unit() const { return unit_; }
-    /// How far what is lit of a surface reaches around its vertices, so that rays that leave it start beyond
-    /// it; 0 of faces and of the ground (-1).
-    float reach(int surface) const;
+    /// How far the element of a lit surface reaches around its vertex, so that rays that leave it start
+    /// beyond its neighbours, which overlap it; 0 of faces and of the ground.
+    float reach(const SurfacePlace& on) const;
 
     /// Holds all casters; RayScene's frame. Its radius is 0 where there are none.
     struct Ball {
@@ -130,7 +130,7 @@ class RayScene {
 
     /// The same of what a ray has met, along a unit normal.
     Vec3 start_at(const RayHit& hit, const Vec3& normal) const {
-        return off_surface(hit.position, normal, normal * reach(hit.surface));
+        return off_surface(hit.position, normal, normal * reach(hit.on()));
     }
 
     const std::optional<RayGround>& ground() const { return ground_; }
@@ -153,7 +153,7 @@ class RayScene {
         Vec3 position;
         Vec3 face;        ///< normal of the element itself: the interpolated one lies above it or below
         Vec3 normal;      ///< the interpolated one, but for a surface that stands before the place
-        float reach = 0;  ///< of the surface; the largest one where it is not found
+        float reach = 0;  ///< of the element; where it is not found, that of the nearest one along the view
         SurfacePlace on;  ///< -1 where the normal is not interpolated
     };
     /// A pixel's surface as the rasteriser has it.
@@ -211,8 +211,11 @@ class RayScene {
     void place_ground();
     /// What is seen where no surface is found.
     Seen nothing_at(const Place& place) const {
-        return {place.position, place.normal, place.normal, reach_, {}};
+        return {place.position, place.normal, place.normal, reach_beside(place), {}};
     }
+    /// The reach of the nearest element along the view that reaches as far as the place: between elements
+    /// that overlap a pixel shows their mean. The largest of all surfaces where there is none.
+    float reach_beside(const Place& place) const;
     /// What a ray to the place has met, after `distance`.
     Seen seen_by(const Place& place, const RaySegment& ray, float distance, const Vec3& face,
                  const SurfacePlace& on) const;
