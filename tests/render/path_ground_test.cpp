@@ -188,5 +188,46 @@ TEST(PathGround, FromBelowThereIsNone) {
             }
 }
 
+/// What the ball of APlaneFades mirrors of a ground 1.5 below that catches shadows: the place 3.1157 from the
+/// foot. The sun comes from behind the ball, which throws its shadow there, or from before it.
+double caught_in_mirror(bool rays, BackgroundMode background, bool behind) {
+    Scene scene;
+    Mesh ball = make_sphere(1, 256);
+    ball.set_material(surface(1, 0));
+    scene.show(ball, "ball");
+    scene.set_environment(constant_environment(0.5f));
+    Light sun;
+    sun.type = LightType::directional;
+    sun.direction = Vec3(0, -1.5f, behind ? 3.1157f : -3.1157f);
+    sun.angular_radius_deg = 0;
+    sun.intensity = 1000;
+    scene.set_light("sun", sun);
+    app::Session session = session_of_paths(scene, GroundMode::shadow, -1.5);
+    Settings& s = session.settings();
+    s.path.enabled = !rays;
+    s.rays.enabled = rays;
+    s.shadows.enabled = true;
+    s.background.mode = background;
+    s.background.color = Vec3::Ones();
+    s.camera.position = Vec3d(0, -0.25882, 4.6);
+    s.camera.target = Vec3d(0, -0.25882, 0);
+    s.camera.fov_y_deg = 1;
+    return mean_of(session, 16);
+}
+
+// Mirrors show the shadows of lamps on such a ground before all backgrounds, in place of what lies behind it:
+// the sun sends a thousand times the sky's light, so that hardly anything is left of its shadow, and all
+// where it shines. 0.01: of 1000 sin(25.7) / pi + 0.5 that arrives the sky has 0.004.
+TEST(PathGround, MirrorsShowTheShadowsOfLampsOnACatcher) {
+    for (const bool rays : {false, true})
+        for (const BackgroundMode background :
+             {BackgroundMode::transparent, BackgroundMode::environment, BackgroundMode::color}) {
+            SCOPED_TRACE(testing::Message() << rays << ", " << int(background));
+            const double open = caught_in_mirror(rays, background, false);
+            EXPECT_GT(open, 0.45);
+            EXPECT_LT(caught_in_mirror(rays, background, true), 0.01 * open);
+        }
+}
+
 }  // namespace
 }  // namespace easypbr::path_ground_test

@@ -67,7 +67,6 @@ struct PathTracer::Escaped {
         densities.push_back(density);
         paths.push_back(path);
     }
-    void add(const Escaped& from, size_t i) { add(from.directions[i], from.densities[i], from.paths[i]); }
 
     std::vector<Vec3> directions;
     std::vector<float> densities;
@@ -76,10 +75,9 @@ struct PathTracer::Escaped {
 
 /// Paths that have met a ground that catches shadows, which ends them.
 struct PathTracer::Caught {
-    std::vector<RaySegment> upwards;  ///< that look whether the sky is seen from there
-    Escaped paths;
-    std::vector<GroundHit> before_color;  ///< that see the background's colour there
-    std::vector<Scattering> scattered;    ///< how they have been before
+    std::vector<GroundHit> hits;
+    std::vector<Vec3> before_color;  ///< throughput of what sees the background's colour there
+    Escaped before_sky;              ///< what sees the sky there
 };
 
 }  // namespace easypbr::render

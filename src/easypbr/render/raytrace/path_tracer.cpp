@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "easypbr/core/luminance.h"
 #include "easypbr/render/frame/inverse_tone.h"
@@ -126,22 +127,28 @@ void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const
     }
 }
 
+std::vector<float> PathTracer::shown_by_ground(std::span<const GroundHit> hits, uint32_t depth) const {
+    if (hits.empty()) return {};
+    const float strength = resolved_->settings.ground.shadow_strength;
+    std::vector<float> shown = catcher_.sampled_parts(hits, depth);
+    for (float& part : shown) part = 1 - strength * (1 - part);
+    return shown;
+}
+
 void PathTracer::add_caught(const Caught& caught, uint32_t depth, PathRadiance& radiance) const {
-    if (!caught.before_color.empty()) {
-        // The paths end here: nothing else takes the random numbers of the next surface.
-        const std::vector<float> parts = catcher_.sampled_parts(caught.before_color, depth + 1);
-        const float strength = resolved_->settings.ground.shadow_strength;
-        for (size_t i = 0; i < parts.size(); ++i) {
-            const PathState& state = caught.before_color[i].state;
-            const Vec3 seen = *background_ * (1 - strength * (1 - parts[i]));
-            add(state.index, state.throughput.cwiseProduct(seen), caught.scattered[i], radiance);
-        }
+    // The paths end here: no path takes the random numbers of the next surface.
+    const std::vector<float> shown = shown_by_ground(caught.hits, depth + 1);
+    Escaped before_sky;
+    for (size_t i = 0; i < shown.size(); ++i) {
+        Escaped::Path path = caught.before_sky.paths[i];
+        const Vec3& before_color = caught.before_color[i];
+        if (before_color.maxCoeff() > 0)
+            add(path.index, before_color.cwiseProduct(*background_ * shown[i]), path.scattered, radiance);
+        path.throughput *= shown[i];
+        if (path.throughput.maxCoeff() > 0)
+            before_sky.add(caught.before_sky.directions[i], caught.before_sky.densities[i], path);
     }
-    const std::vector<uint8_t> blocked = scene_->blocked(caught.upwards, Neighbours::scattered);
-    Escaped open;
-    for (size_t i = 0; i < blocked.size(); ++i)
-        if (!blocked[i]) open.add(caught.paths, i);
-    add_escaped(open, radiance);
+    add_escaped(before_sky, radiance);
 }
 
 std::vector<float> PathTracer::emission_weights(std::span<const Hit> hits) const {
@@ -246,39 +253,38 @@ bool PathTracer::sees_sky_in_ground(Scattering scattered) const {
     return !background_ || scattered == Scattering::wide;
 }
 
-RaySegment PathTracer::upwards(const Vec3& position, const PathState& state, uint32_t depth) const {
-    const Vec3 up = scene_->ground()->up.cast<float>();
-    const Vec2 u = state.sampler.pair(depth, emitter_point);
-    return {RayScene::off_surface(position, up), cosine_direction(RayFrame(up), u), unlimited};
-}
-
-bool PathTracer::arrives(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
-                         float distance) const {
-    const Vec3 from = start_towards(batch, path, direction);
-    const float to_ground = scene_->ground_distance(from, direction);
-    if (!(to_ground < distance)) return !scene_->blocked(from, direction, distance, Transmissive::met);
-    const PathState& state = batch.state[path];
-    const bool is_sky = std::isinf(distance) && scene_->ground()->shadow_catcher;
-    if (!is_sky || !sees_sky_in_ground(state.scattered)) return false;
-    if (scene_->blocked(from, direction, to_ground, Transmissive::met)) return false;
-    const RaySegment ray = upwards(from + direction * to_ground, state, depth);
-    return !scene_->blocked(ray.from, ray.direction, ray.distance);
-}
-
 void PathTracer::add_chosen(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
                             std::vector<Vec3>& light) const {
+    const bool catches = scene_->ground() && scene_->ground()->shadow_catcher;
+    std::vector<GroundHit> below;  // light that a ground shows, and its paths
+    std::vector<std::pair<size_t, Vec3>> shown_there;
     for (size_t i = 0; i < batch.count; ++i) {
         const Vec3 chosen = scattered.chosen_light.at(i);
         if (!(chosen.maxCoeff() > 0)) continue;
+        const PathState& state = batch.state[i];
         const Vec3 direction = scattered.chosen_direction.at(i);
         const float distance = scattered.distance[i];
-        // Where a background of one colour is seen through surfaces there is no sky.
-        const bool seen_through = !batch.state[i].reflected && batch.passes(i, direction);
-        if (background_ && seen_through && std::isinf(distance)) continue;
-        if (distance > 0 && !arrives(batch, i, depth, direction, distance)) continue;
         const bool is_sky = std::isinf(distance);
-        light[i] += is_sky ? chosen : chosen.cwiseProduct(left_on_the_way(batch, i, direction, distance));
+        // Where a background of one colour is seen through surfaces there is no sky.
+        const bool seen_through = !state.reflected && batch.passes(i, direction);
+        if (background_ && seen_through && is_sky) continue;
+        const Vec3 from = start_towards(batch, i, direction);
+        const float to_ground = scene_->ground_distance(from, direction);
+        // The ground hides what is below; one that catches shadows shows the sky.
+        const bool meets_ground = distance > 0 && to_ground < distance;
+        if (meets_ground && !(is_sky && catches && sees_sky_in_ground(state.scattered))) continue;
+        const float end = std::min(distance, to_ground);
+        if (distance > 0 && scene_->blocked(from, direction, end, Transmissive::met)) continue;
+        if (meets_ground) {
+            below.push_back({state, from + direction * to_ground});
+            shown_there.emplace_back(i, chosen);
+        } else {
+            light[i] += is_sky ? chosen : chosen.cwiseProduct(left_on_the_way(batch, i, direction, distance));
+        }
     }
+    // The numbers of this surface have chosen the directions.
+    const std::vector<float> shown = shown_by_ground(below, depth + 1);
+    for (size_t i = 0; i < shown.size(); ++i) light[shown_there[i].first] += shown_there[i].second * shown[i];
 }
 
 void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
@@ -342,20 +348,16 @@ Vec3 PathTracer::part_before_color(const PathBatch& batch, size_t path, const Sc
     return (1 - diffuse.array() / weight.array().max(1e-20f)).max(0.0f);
 }
 
-void PathTracer::note_caught(const PathBatch& batch, size_t path, uint32_t depth, const Scattered& scattered,
-                             const Hit& hit, Caught& to) const {
+void PathTracer::note_caught(const PathBatch& batch, size_t path, const Scattered& scattered, const Hit& hit,
+                             Caught& to) const {
     const Scattering before = batch.state[path].scattered;
     const Vec3 part = part_before_color(batch, path, scattered, hit.state);
-    if (part.maxCoeff() > 0) {
-        to.before_color.push_back({hit.state, hit.hit.position});
-        Vec3& throughput = to.before_color.back().state.throughput;
-        throughput = throughput.cwiseProduct(part);
-        to.scattered.push_back(before);
-    }
-    const Vec3 left = hit.state.throughput.cwiseProduct(Vec3::Ones() - part);
-    if (!(left.maxCoeff() > 0)) return;
-    to.upwards.push_back(upwards(hit.hit.position, hit.state, depth));
-    to.paths.add(hit.direction, hit.density, {left, hit.state.index, before, sees_sky_in_ground(before)});
+    const Vec3& throughput = hit.state.throughput;
+    to.hits.push_back({hit.state, hit.hit.position});
+    to.before_color.push_back(throughput.cwiseProduct(part));
+    to.before_sky.add(
+        hit.direction, hit.density,
+        {throughput.cwiseProduct(Vec3::Ones() - part), hit.state.index, before, sees_sky_in_ground(before)});
 }
 
 void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
@@ -393,7 +395,7 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
         const Hit met{state, *hit, direction, scattered.density[i],
                       hit->distance * float(scene_->unit()) * ray_widening};
         if (hit->surface < 0 && catches)
-            note_caught(batch, i, depth, scattered, met, caught);
+            note_caught(batch, i, scattered, met, caught);
         else
             hits.push_back(met);
     }

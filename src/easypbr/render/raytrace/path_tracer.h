@@ -68,16 +68,13 @@ class PathTracer {
                    std::vector<Vec3>& light) const;
     void add_chosen(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
                     std::vector<Vec3>& light) const;
-    /// Whether light from a direction of next-event estimation, that far away, reaches a path. The ground
-    /// hides what is below; one that catches shadows shows the sky where it is open.
-    bool arrives(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
-                 float distance) const;
     /// Whether paths of this scattering see only the sky in a shadow catcher. Then next-event estimation
     /// looks for the sky there, too. Before a background of one colour BSDF sampling alone does: only it
     /// tells the specular lobe, which sees the colour, from the diffuse one.
     bool sees_sky_in_ground(Scattering scattered) const;
-    /// A ray that looks whether such a ground is open to the sky where a path has met it.
-    RaySegment upwards(const Vec3& position, const PathState& state, uint32_t depth) const;
+    /// The part of what lies behind such a ground that it shows where paths have met it, by one sample of its
+    /// light for each. `depth`: of the random numbers.
+    std::vector<float> shown_by_ground(std::span<const GroundHit> hits, uint32_t depth) const;
     /// What surfaces with extensions emit.
     void add_emission(const PathBatch& batch, const Scattered& scattered, PathRadiance& radiance) const;
     /// Follows the paths to the next surface.
@@ -106,8 +103,8 @@ class PathTracer {
     /// Adds what the sky sends to paths that have left the scene in sampled directions.
     void add_escaped(const Escaped& paths, PathRadiance& radiance) const;
     /// Notes a path that has met a ground that catches shadows, from surface `path` of a batch.
-    void note_caught(const PathBatch& batch, size_t path, uint32_t depth, const Scattered& scattered,
-                     const Hit& hit, Caught& to) const;
+    void note_caught(const PathBatch& batch, size_t path, const Scattered& scattered, const Hit& hit,
+                     Caught& to) const;
     /// Adds what such a ground shows of the sky behind it, or of the background's colour.
     void add_caught(const Caught& caught, uint32_t depth, PathRadiance& radiance) const;
     /// The part of a path, as it goes on from a surface of a batch, that sees a background of one colour on

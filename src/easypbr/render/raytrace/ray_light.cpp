@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
 #include "easypbr/render/raytrace/ray_surface.h"
@@ -67,9 +68,9 @@ bool has_areas(const ResolvedSettings& resolved) {
                                [](const ResolvedLight& light) { return is_area(light.type); });
 }
 
-/// Irradiance of area lights, divided by pi, by a point of each.
+/// Irradiance of area lights, divided by pi, by a point of each; `all`: if nothing stood in the way.
 Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const RayHit& hit,
-                const Vec3& normal, const Vec2& u) {
+                const Vec3& normal, const Vec2& u, Vec3* all = nullptr) {
     // Rays to a point of an emitter end before it by this part of their length.
     constexpr double before_emitter = 1e-4;
     Vec3 sum = Vec3::Zero();
@@ -80,11 +81,13 @@ Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const R
         const AreaPoint point = area_point(light, place, u);
         const double cosine = double(normal.dot(point.direction));
         if (!(point.solid_angle > 0) || cosine <= 0) continue;
+        const Vec3 sent = light.color * float(double(light.intensity) * cosine * point.solid_angle / pi);
+        if (all) *all += sent;
         const auto reach = float(point.distance * (1 - before_emitter) / scene.unit());
         if (light.casts_shadows && resolved.settings.shadows.enabled &&
             scene.blocked(from, point.direction, reach))
             continue;
-        sum += light.color * float(double(light.intensity) * cosine * point.solid_angle / pi);
+        sum += sent;
     }
     return sum;
 }
@@ -122,9 +125,9 @@ Vec3 RayLight::bright_direction(const Vec2& u) const {
     return resolved_->R_env_world.transpose() * bright_.sample(u).direction();
 }
 
-Vec3 RayLight::from_lights(const RayHit& hit, const Vec3& normal) const {
+RayLight::Light RayLight::from_lights(const RayHit& hit, const Vec3& normal) const {
     const Vec3& at = hit.position;
-    Vec3 sum = Vec3::Zero();
+    Light sum;
     const auto unit = float(scene_->unit());
     for (const ResolvedLight& light : resolved_->lights) {
         if (is_area(light.type)) continue;
@@ -138,22 +141,42 @@ Vec3 RayLight::from_lights(const RayHit& hit, const Vec3& normal) const {
         if (cosine <= 0) continue;
         const float falls = parallel ? 1.0f : float(falloff(light, -l.cast<double>(), double(world)));
         if (falls <= 0) continue;
+        const Vec3 sent = light.color * (light.intensity * falls * cosine / float(pi));
+        sum.all += sent;
         const float reach = parallel ? std::numeric_limits<float>::infinity() : distance;
         if (light.casts_shadows && resolved_->settings.shadows.enabled &&
             scene_->blocked(scene_->start_at(hit, normal), l, reach))
             continue;
-        sum += light.color * (light.intensity * falls * cosine / float(pi));
+        sum.arrives += sent;
     }
     return sum;
 }
 
+Vec3 RayLight::hidden_sky(const RayHit& hit, RayRandom& random) const {
+    const Vec3 chosen = random.next();
+    const Vec2 u = chosen.tail<2>();
+    const float bright = bright_part();
+    const Vec3 direction =
+        chosen.x() < bright ? bright_direction(u) : cosine_direction(RayFrame(hit.normal), u);
+    const float matt = hit.normal.dot(direction) / float(pi);
+    if (!(matt > 0)) return Vec3::Zero();
+    if (!scene_->blocked(scene_->start_at(hit, hit.normal), direction,
+                         std::numeric_limits<float>::infinity()))
+        return Vec3::Zero();
+    return sky(direction) * (matt / (bright * bright_density(direction) + (1 - bright) * matt));
+}
+
 Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const {
-    const Vec3 up = cosine_direction(RayFrame(hit.normal), random.next().tail<2>());
-    const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up,
-                                       std::numeric_limits<float>::infinity());
-    if (background_ && !scattered)
-        return *background_ * (open ? 1.0f : 1 - resolved_->settings.ground.shadow_strength);
-    return open ? sky(direction) : Vec3(Vec3::Zero());
+    Light light = from_lights(hit, hit.normal);
+    if (has_areas(*resolved_))
+        light.arrives +=
+            from_areas(*resolved_, *scene_, hit, hit.normal, random.next().tail<2>(), &light.all);
+    const Vec3 of_sky = even_sky(hit.normal);
+    light.all += of_sky;
+    light.arrives += of_sky - hidden_sky(hit, random);
+    const float all = luminance(light.all), hidden = all > 0 ? 1 - luminance(light.arrives) / all : 0;
+    const float shown = 1 - resolved_->settings.ground.shadow_strength * hidden;
+    return (background_ && !scattered ? *background_ : sky(direction)) * shown;
 }
 
 Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, RayRandom& random) const {
@@ -170,7 +193,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
                                       : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));
         const Vec3 diffuse = s.diffuse.cwiseProduct(Vec3::Ones() - reflects);
-        Vec3 lit = from_lights(hit, s.normal);
+        Vec3 lit = from_lights(hit, s.normal).arrives;
         if (with_areas) lit += from_areas(*resolved_, *scene_, hit, s.normal, random.next().tail<2>());
         sum += weight.cwiseProduct(s.emission + diffuse.cwiseProduct(lit));
         const float mirrors = reflects.mean(), scatters = diffuse.mean();

@@ -38,10 +38,16 @@ class RayLight {
     Vec3 radiance(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const;
 
   private:
-    /// What a ground shows that catches shadows, where it is open: a background of one colour to mirrors,
-    /// else the sky behind it.
+    /// What a ground shows that catches shadows, by the light that arrives there: a background of one colour
+    /// to mirrors, else the sky behind it.
     Vec3 caught(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const;
-    Vec3 from_lights(const RayHit& hit, const Vec3& normal) const;
+    /// Irradiance, divided by pi.
+    struct Light {
+        Vec3 arrives{0, 0, 0}, all{0, 0, 0};  ///< all: if nothing stood in the way
+    };
+    Light from_lights(const RayHit& hit, const Vec3& normal) const;
+    /// What is in the way of the sky's light on a surface, likewise, by a ray in one direction.
+    Vec3 hidden_sky(const RayHit& hit, RayRandom& random) const;
     /// Irradiance of the open sky on a surface, divided by pi.
     Vec3 even_sky(const Vec3& normal) const;
 
