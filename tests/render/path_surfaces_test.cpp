@@ -399,5 +399,49 @@ TEST(PathSurfaces, OneLargeDiscLeavesShadowsOfOthers) {
     }
 }
 
+/// A line without light, from (0, 0, -1) to (length, 0, -1).
+Mesh line_of(float length) {
+    Array3f::Dense V(2, 3);
+    V << 0, 0, -1, length, 0, -1;
+    Array2i::Dense E(1, 2);
+    E << 0, 1;
+    MeshData data;
+    data.V = Array3f(V);
+    data.E = Array2i(E);
+    return Mesh(data);
+}
+
+// Only what casts shadows says how exact they are: the sheet 0.05 above the floor keeps its shadow, which the
+// light along (1, 0, -1) throws 0.05 beside it, by rays and in shadow maps, however far lines and vertices
+// without faces are. Pixels are 0.022 wide; the one at 0.28 lies in the shadow that ends at 0.3, and no
+// longer below the sheet, which ends at 0.25 and hides 0.253 from the camera.
+TEST(PathSurfaces, WhatCastsNothingLeavesShadowsAlone) {
+    Material dark = matt(0);
+    dark.specular = 0;
+    Mesh sheet = facing_square(0.25f, dark);
+    sheet.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 0.05)));
+    for (const bool paths : {true, false})
+        for (const bool line : {true, false}) {
+            Mesh floor = facing_square(2, matt(0.5f));
+            if (!line) {
+                Array3f::Dense V(5, 3);
+                V << Array3f::Dense(floor.V()), 1e5f, 0, 0;
+                floor.set_UV({});
+                floor.set_V(Array3f(V));
+            }
+            Scene scene;
+            scene.show(floor, "floor");
+            scene.show(sheet, "sheet");
+            if (line) scene.show(line_of(1e5f), "line");
+            shine(scene, Vec3(1, 0, -1).normalized());
+            app::Session session = path_session(scene, 32);
+            session.settings().path.enabled = paths;
+            look_from(session, Vec3d(0, 0, 4), 10);
+            const Image image = render_linear(session, 4);
+            EXPECT_LT(image.at<float>(28, 16)[0], 0.01) << paths << line;
+            EXPECT_GT(image.at<float>(31, 16)[0], 0.3) << paths << line;
+        }
+}
+
 }  // namespace
 }  // namespace easypbr::path_surfaces_test

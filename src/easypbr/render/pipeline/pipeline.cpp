@@ -71,7 +71,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     if (contents.paths) surfaces_.release();  // paths take longer than clearing new memory
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
-    shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
+    shadow_maps_.begin(seen, casters, receivers_of(list, contents));
     const bool native = is_lit_natively(list, contents);
     shadow_maps_.keep_in_host_memory(native);
     find_place_light(frame, list, casters, contents);

@@ -79,14 +79,6 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     return caster;
 }
 
-Box3d ShadowMaps::caster_bounds(const DrawList& list, const Box3d& bounds) {
-    double reach = 0;
-    for (const auto& kind : primitives_)
-        for (const DrawItem& item : list.of(kind->mode())) reach = std::max(reach, kind->reach(item));
-    if (bounds.isEmpty() || reach == 0) return bounds;
-    return {bounds.min() - Vec3d::Constant(reach), bounds.max() + Vec3d::Constant(reach)};
-}
-
 void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
     std::vector<Caster> casters;
     for (const auto& kind : primitives_)
@@ -154,9 +146,8 @@ void ShadowMaps::keep_in_host_memory(bool host) {
     prepare_tints();
 }
 
-void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices,
-                       Receivers receivers) {
-    const Box3d bounds = caster_bounds(casters, vertices);
+void ShadowMaps::begin(const Frame& frame, const DrawList& casters, Receivers receivers) {
+    const Box3d bounds = extent_.of(casters, primitives_);
     note_casters(casters, bounds);
     list_ = &casters;
     ++frame_;

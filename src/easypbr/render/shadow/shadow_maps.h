@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/shadow/caster_bounds.h"
 #include "easypbr/render/shadow/light_block.h"
 #include "easypbr/render/shadow/shadow_pass.h"
 
@@ -25,9 +26,9 @@ class ShadowMaps {
     /// within the bounds of what casts, or beyond them too.
     enum class Receivers { none, within, anywhere };
 
-    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Only maps that
-    /// receivers need are drawn. `casters` must live until its last block.
-    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, Receivers receivers);
+    /// Takes note of a frame's lights and of what casts. Only maps that receivers need are drawn. `casters`
+    /// must live until its last block.
+    void begin(const Frame& frame, const DrawList& casters, Receivers receivers);
 
     /// Whether some light of the frame has maps.
     bool has_shadows() const { return std::ranges::any_of(requests_, &Request::shadowed); }
@@ -99,8 +100,6 @@ class ShadowMaps {
 
     static Shaded shaded_by(const DrawItem& item);
     static Caster caster_of(const DrawItem& item);
-    /// The vertices' bounds and what reaches beyond them.
-    Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
     void note_casters(const DrawList& list, const Box3d& bounds);
     static Request request_of(const ResolvedLight& light, const Frame& frame, const Box3d& bounds,
                               Receivers receivers);
@@ -141,6 +140,7 @@ class ShadowMaps {
     std::vector<bool> taken_;                                        ///< layers
     std::map<LightKey, Entry> entries_;
     std::vector<Caster> casters_;
+    CasterBounds extent_;
     Box3d bounds_;
     uint64_t casters_generation_ = 0;  ///< changes with what casts and its bounds
 

@@ -1,0 +1,32 @@
+// How large what casts shadows is.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "easypbr/core/revision_cache.h"
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/primitives/primitive.h"
+
+namespace easypbr::render {
+
+/// Keeps what it has found of meshes for as long as it is asked for in each frame.
+class CasterBounds {
+  public:
+    /// Of the items of a list in world space, with what reaches beyond their vertices; of meshes by the
+    /// vertices that faces have. Empty when there are none.
+    Box3d of(const DrawList& casters, const Primitives& primitives);
+
+  private:
+    /// What is drawn of an item; of a mesh without the vertices that no face has.
+    std::shared_ptr<const MeshData> used(const DrawItem& item, DrawMode kind);
+
+    using Vertices = std::vector<Eigen::Index>;
+    RevisionCache<std::pair<uint64_t, Eigen::Index>, Vertices>
+        unused_;  ///< by the faces, and how many vertices
+    RevisionCache<std::pair<uint64_t, uint64_t>, std::shared_ptr<const MeshData>> meshes_;
+};
+
+}  // namespace easypbr::render
