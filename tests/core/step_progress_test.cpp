@@ -71,5 +71,59 @@ TEST(StepProgress, IsAPartOfTheStepAroundIt) {
     EXPECT_EQ(said.texts[2], "turn.mp4");
 }
 
+struct Cancelled {};
+
+// What the sink throws reaches the caller; the end is not reported, as it was not reached.
+TEST(StepProgress, PassesOnWhatTheSinkThrows) {
+    int calls = 0;
+    set_progress_sink([&](std::string_view, double) {
+        ++calls;
+        throw Cancelled();
+    });
+    const auto work = [] {
+        StepProgress frames("turn.mp4", "frame", 2, 0);
+        StepProgress samples("picture", "sample", 4, 0);
+        wait_ms(1);
+        samples.done(1);
+    };
+    EXPECT_THROW(work(), Cancelled);
+    EXPECT_EQ(calls, 1);
+    set_progress_sink({});
+}
+
+// The work is done then: there is nothing to give up.
+TEST(StepProgress, EndsWithASinkThatThrowsAtTheEnd) {
+    std::vector<double> parts;
+    set_progress_sink([&](std::string_view, double part) {
+        parts.push_back(part);
+        if (part >= 1) throw Cancelled();
+    });
+    {
+        StepProgress progress("picture", "sample", 4, 0);
+        wait_ms(1);
+        progress.done(2);
+    }
+    set_progress_sink({});
+    EXPECT_EQ(parts, (std::vector<double>{0.5, 1}));
+}
+
+// A destructor may do work of its own while an exception passes: that work does end.
+TEST(StepProgress, EndsWithinADestructorThatAnExceptionCalls) {
+    Said said;
+    struct Work {
+        ~Work() {
+            StepProgress progress("picture", "sample", 4, 0);
+            wait_ms(1);
+            progress.done(2);
+        }
+    };
+    try {
+        const Work work;
+        throw Cancelled();
+    } catch (const Cancelled&) {
+    }
+    EXPECT_EQ(said.parts, (std::vector<double>{0.5, 1}));
+}
+
 }  // namespace
 }  // namespace easypbr::step_progress_test

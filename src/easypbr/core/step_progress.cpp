@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "easypbr/core/log.h"
@@ -22,11 +23,17 @@ StepProgress::StepProgress(std::string what, std::string step, int count, double
       step_(std::move(step)),
       count_(std::max(count, 1)),
       quiet_s_(quiet_s),
+      exceptions_(std::uncaught_exceptions()),
       outer_(std::exchange(innermost_progress, this)) {}
 
 StepProgress::~StepProgress() {
     innermost_progress = outer_;
-    if (is_shown_) report_progress(what_, 1);
+    // What an exception gives up has not ended well: fraction 1 would say so.
+    if (!is_shown_ || std::uncaught_exceptions() > exceptions_) return;
+    try {
+        report_progress(what_, 1);
+    } catch (...) {  // There is nothing left to give up, and a destructor must not throw.
+    }
 }
 
 void StepProgress::done(int steps) {

@@ -7,8 +7,8 @@
 namespace easypbr {
 
 /// Reports progress (core/log.h) from some seconds after its construction on, a few times per second, and its
-/// end when it goes out of scope. What runs inside another one on the same thread, such as the samples of a
-/// frame of a recording, is a part of that one's step.
+/// end when it goes out of scope, unless an exception passes. What runs inside another one on the same
+/// thread, such as the samples of a frame of a recording, is a part of that one's step.
 class StepProgress {
   public:
     /// `what` is done, in `count` steps (above 0) that are called `step`: "turn.mp4: frame 3 of 10, 0:12
@@ -31,6 +31,7 @@ class StepProgress {
     double quiet_s_;
     int done_ = 0;
     bool is_shown_ = false;
+    int exceptions_;  ///< that were passing at its construction
     StepProgress* outer_;
     Clock::time_point start_ = Clock::now(), last_ = start_;
 };
