@@ -11,6 +11,7 @@ enum class LogLevel { debug, info, warning };
 using LogSink = std::function<void(LogLevel, std::string_view)>;
 
 /// Replaces the sink (process-wide); an empty function silences the log, which is the default. Thread-safe.
+/// Sinks are kept until the process ends: the destructors of static objects may log.
 void set_log_sink(LogSink sink);
 
 /// Sends one message (without line end) to the sink. Thread-safe.

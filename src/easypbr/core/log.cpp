@@ -28,14 +28,15 @@ struct Slot {
     }
 };
 
+// Never destroyed: static objects of a program, such as a viewer, may log when they are.
 Slot<LogSink>& log_slot() {
-    static Slot<LogSink> slot;
-    return slot;
+    static auto* const slot = new Slot<LogSink>;
+    return *slot;
 }
 
 Slot<ProgressSink>& progress_slot() {
-    static Slot<ProgressSink> slot;
-    return slot;
+    static auto* const slot = new Slot<ProgressSink>;
+    return *slot;
 }
 
 }  // namespace
