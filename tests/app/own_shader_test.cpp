@@ -3,9 +3,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "easypbr/app/custom_pass.h"
 #include "easypbr/core/error.h"
@@ -428,6 +434,92 @@ TEST(OwnPass, FailsUnderItsNameAndLeavesTheSessionUsable) {
         EXPECT_EQ(session.render().at<uint8_t>(3, 3)[0], before.at<uint8_t>(3, 3)[0]);
     EXPECT_THROW(session.remove_pass("ruse"), NameError);
     EXPECT_THROW(session.add_pass("none", Stage::light, nullptr), ArgumentError);
+}
+
+/// Leaves something behind, and draws nothing.
+class LeavingPass : public Pass {
+  public:
+    explicit LeavingPass(std::function<void()> leave) : leave_(std::move(leave)) {}
+    void draw(const PassInput&) override { leave_(); }
+
+  private:
+    std::function<void()> leave_;
+};
+
+/// A session of blended spheres by OpenGL, which asks whether a layer has drawn anything.
+Session blended_session(Stage stage, std::function<void()> leave) {
+    Scene scene;
+    Material glass;
+    glass.opacity = 0.5f;
+    for (const double z : {0.0, 0.5}) {
+        Mesh sphere = make_sphere(1, 16);
+        sphere.set_material(glass);
+        sphere.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, z)));
+        scene.show(sphere, z > 0 ? "near" : "far");
+    }
+    Session session = plain_session(scene, side);
+    session.settings().image.size = Vec2i(side + 1, side - 1);  // rows that no alignment above 1 divides
+    session.use_device(DrawDevice::gl);
+    look_from(session, Vec3d(0, 0, 5));
+    session.add_pass("leaving", stage, std::make_shared<LeavingPass>(std::move(leave)));
+    return session;
+}
+
+/// The picture after the pass has been drawn, and the same with a texture that is uploaded then.
+std::vector<Image> pictures_after(Stage stage, const std::function<void()>& leave) {
+    Session session = blended_session(stage, leave);
+    std::vector<Image> pictures = {session.render(), session.render()};
+    auto texels = std::make_shared<Image>(33, 17, 3, PixelType::u8);
+    for (size_t i = 0; i < texels->bytes().size(); ++i) texels->bytes()[i] = std::byte(i * 7);
+    Material material;
+    material.base_color_texture.image = texels;
+    session.scene().show(facing_square(10, material), "square");
+    pictures.push_back(session.render());
+    return pictures;
+}
+
+void expect_nothing_left(const std::function<void()>& leave) {
+    for (const Stage stage : {Stage::light, Stage::overlay, Stage::picture}) {
+        const std::vector<Image> expected = pictures_after(stage, [] {}), got = pictures_after(stage, leave);
+        for (size_t i = 0; i < expected.size(); ++i)
+            EXPECT_TRUE(std::ranges::equal(got[i].bytes(), expected[i].bytes()))
+                << "picture " << i << ", stage " << int(stage);
+    }
+}
+
+// How rows of pixels lie in memory: the library's own arrays have neither gaps nor room for them.
+TEST(OwnPass, MayLeaveAnyLayoutOfPixels) {
+    expect_nothing_left([] {
+        glPixelStorei(GL_PACK_ALIGNMENT, 8);
+        glPixelStorei(GL_PACK_ROW_LENGTH, 4096);
+        for (const GLenum parameter : {GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_PACK_SWAP_BYTES})
+            glPixelStorei(parameter, 1);
+    });
+    expect_nothing_left([] {
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
+        for (const GLenum parameter : {GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT})
+            glPixelStorei(parameter, 4096);
+        for (const GLenum parameter :
+             {GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_SWAP_BYTES})
+            glPixelStorei(parameter, 1);
+    });
+}
+
+TEST(OwnPass, MayLeaveAQueryOpen) {
+    for (const GLenum target :
+         {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE}) {
+        SCOPED_TRACE(fmt::format("0x{:x}", target));
+        expect_nothing_left([target] {
+            GLuint query = 0;
+            glGenQueries(1, &query);
+            glBeginQuery(target, query);
+        });
+    }
+}
+
+// The framebuffer that a pass is called with is its own.
+TEST(OwnPass, MayLeaveItsFramebufferWithoutTargets) {
+    expect_nothing_left([] { glDrawBuffer(GL_NONE); });
 }
 
 TEST(OwnPass, OfAFileIsReadAgainWhenItChanges) {

@@ -101,7 +101,7 @@ class PassInput {
 
 /// A pass of a program's own. It is called with the context current and may use any OpenGL 4.5, by a loader
 /// of its own (libepoxy, glad, eglGetProcAddress); whatever state it leaves behind, the renderer sets back
-/// what it needs.
+/// what it needs. Conditional rendering and transform feedback that it begins, it has to end.
 class Pass {
   public:
     virtual ~Pass() = default;

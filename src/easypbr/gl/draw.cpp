@@ -79,6 +79,29 @@ bool is_large_viewport() {
     return int64_t(viewport[2]) * viewport[3] > most_pixels;
 }
 
+/// Rows of pixels without gaps, as all of this library's arrays are: other values would read and write past
+/// their ends.
+void reset_pixel_store() {
+    for (const GLenum target : {GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER}) glBindBuffer(target, 0);
+    for (const GLenum parameter : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(parameter, 1);
+    for (const GLenum parameter :
+         {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_ROWS,
+          GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_IMAGES, GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,
+          GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS,
+          GL_UNPACK_SKIP_IMAGES})
+        glPixelStorei(parameter, 0);
+}
+
+/// One of these may be open at a time: the renderer's own could not begin.
+void end_queries() {
+    for (const GLenum target :
+         {GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED_CONSERVATIVE}) {
+        GLint open = 0;
+        glGetQueryiv(target, GL_CURRENT_QUERY, &open);
+        if (open != 0) glEndQuery(target);
+    }
+}
+
 }  // namespace
 
 void draw_screen(const DrawState& state) {
@@ -138,6 +161,7 @@ void draw_triangles(const DrawState& state, const VertexArray& array, int64_t fi
 
 void reset_state() {
     if (!Context::has_driver()) return;
+    end_queries();
     for (const GLenum off :
          {GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD, GL_SAMPLE_COVERAGE,
           GL_FRAMEBUFFER_SRGB, GL_COLOR_LOGIC_OP, GL_PRIMITIVE_RESTART, GL_DEPTH_CLAMP})
@@ -146,8 +170,7 @@ void reset_state() {
     // Row 0 of every target is the top of the picture; depth runs from 1 (near) to 0 (infinitely far).
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    for (const GLenum target : {GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER}) glBindBuffer(target, 0);
-    for (const GLenum parameter : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(parameter, 1);
+    reset_pixel_store();
     for (unsigned unit = 0; unit < 16; ++unit) glBindSampler(unit, 0);
 }
 

@@ -190,6 +190,11 @@ const gl::Texture& OutputPass::texture() const {
     return picture_.texture();
 }
 
+const gl::Texture& OutputPass::drawn() const {
+    picture_.upload(transfers_);
+    return picture_.drawn();
+}
+
 void OutputPass::accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces) {
     const bool first = frame.sample_index == 0;
     drawn_ = first ? lit.covered : united(drawn_, lit.covered);

@@ -55,6 +55,8 @@ class OutputPass {
     /// The picture's texture, to read and to draw to.
     const gl::Framebuffer& framebuffer() const;
     const gl::Texture& texture() const;
+    /// The texture for others to draw to by framebuffers of their own.
+    const gl::Texture& drawn() const;
     gl::Format format() const { return picture_.format(); }
 
   private:

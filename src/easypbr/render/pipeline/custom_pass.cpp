@@ -55,12 +55,13 @@ void PassInput::draw(const gl::Program& program, Blend blend) const {
 
 void draw_custom(const CustomPass& custom, const PassInput& input) {
     const auto named = [&](const std::exception& error) {
-        gl::reset_state();
         return fmt::format("pass '{}': {}", custom.name, error.what());
     };
+    const struct Reset {
+        ~Reset() { gl::reset_state(); }
+    } at_end;
     try {
         custom.pass->draw(input);
-        gl::reset_state();
     } catch (const ShaderError& error) {
         throw ShaderError(named(error));
     } catch (const FileError& error) {

@@ -45,7 +45,7 @@ class PassInput {
 };
 
 /// A pass of a program's own. It is called with the context current and may use any OpenGL; whatever state it
-/// leaves behind, the renderer sets back what it needs.
+/// leaves behind, the renderer sets back what it needs, but for conditional rendering and transform feedback.
 class Pass {
   public:
     virtual ~Pass() = default;

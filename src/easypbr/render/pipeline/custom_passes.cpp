@@ -9,15 +9,13 @@ bool CustomPasses::has(Stage stage) const {
 }
 
 void CustomPasses::draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,
-                        const gl::Framebuffer& target, PassTimer& timer) {
-    const PassInput input(frame, targets, image, target, copies_[size_t(stage)]);
-    for (const CustomPass& pass : passes_)
-        if (pass.stage == stage) timer.run(pass.name, [&] { draw_custom(pass, input); });
-}
-
-void CustomPasses::draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,
                         PassTimer& timer) {
-    if (has(stage)) draw(stage, frame, targets, image, gl::Framebuffer({&image}), timer);
+    for (const CustomPass& pass : passes_) {
+        if (pass.stage != stage) continue;
+        const gl::Framebuffer target({&image});
+        const PassInput input(frame, targets, image, target, copies_[size_t(stage)]);
+        timer.run(pass.name, [&] { draw_custom(pass, input); });
+    }
 }
 
 void CustomPasses::draw_in_frame(const Frame& frame, const GBuffer& targets, PassTimer& timer,

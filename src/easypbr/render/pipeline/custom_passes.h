@@ -17,10 +17,8 @@ class CustomPasses {
     bool has(Stage stage) const;
     bool empty() const { return passes_.empty(); }
 
-    /// Draws those of a stage into an image, which `target` has alone.
-    void draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,
-              const gl::Framebuffer& target, PassTimer& timer);
-    /// The same into one of the G-buffer's textures.
+    /// Draws those of a stage into an image, each by a framebuffer of its own: it may leave that in any
+    /// state.
     void draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,
               PassTimer& timer);
     /// Draws those of the stages light and overlay. What they draw may be anywhere in the picture.

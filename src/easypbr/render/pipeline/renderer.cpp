@@ -384,9 +384,7 @@ BackgroundImage* Renderer::background_image(const ResolvedSettings& resolved, co
 
 void Renderer::draw_custom_over_picture() {
     if (!has_custom(picture_->contents.custom, Stage::picture)) return;
-    const gl::Framebuffer& target = output_.framebuffer();
-    custom_.draw(Stage::picture, picture_->frame, pipeline_.targets(), output_.texture(), target,
-                 pipeline_.timer());
+    custom_.draw(Stage::picture, picture_->frame, pipeline_.targets(), output_.drawn(), pipeline_.timer());
 }
 
 Image Renderer::read_picture() const {
