@@ -517,6 +517,40 @@ TEST(OwnPass, MayLeaveAQueryOpen) {
     }
 }
 
+// The outer picture is half drawn: of the same session nothing else can be drawn then, and it is not spoilt.
+TEST(OwnPass, DrawsNoOtherPictureOfItsSession) {
+    Session session = blended_session(Stage::overlay, [] {}), other = blended_session(Stage::light, [] {});
+    const Image expected = session.render(), of_other = other.render();
+    int calls = 0;
+    const auto draw_others = [&] {
+        ++calls;
+        EXPECT_THROW(session.render({Vec2i(8, 8), 1}), ArgumentError);
+        EXPECT_THROW(session.draw_frame(), ArgumentError);
+        EXPECT_THROW(session.refine(), ArgumentError);
+        EXPECT_THROW(session.render_layers({"depth"}), ArgumentError);
+        EXPECT_THROW(session.pick(Vec2d(3, 3)), ArgumentError);
+        EXPECT_THROW(session.beside().render(), ArgumentError) << "by the same device";
+        EXPECT_TRUE(std::ranges::equal(other.render().bytes(), of_other.bytes()));
+    };
+    for (const Stage stage : {Stage::light, Stage::overlay, Stage::picture}) {
+        session.add_pass("leaving", stage, std::make_shared<LeavingPass>(draw_others));
+        EXPECT_TRUE(std::ranges::equal(session.render().bytes(), expected.bytes())) << int(stage);
+        EXPECT_GT(std::exchange(calls, 0), 0);
+        while (session.refine().frames < session.settings().image.samples) continue;
+        EXPECT_GT(std::exchange(calls, 0), 0);
+    }
+    session.add_pass("leaving", Stage::light, std::make_shared<LeavingPass>([&] { session.render(); }));
+    try {
+        session.render();
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("pass 'leaving': this viewer is drawing"),
+                  std::string::npos);
+    }
+    session.remove_pass("leaving");
+    EXPECT_NO_THROW(session.render());
+}
+
 // The framebuffer that a pass is called with is its own.
 TEST(OwnPass, MayLeaveItsFramebufferWithoutTargets) {
     expect_nothing_left([] { glDrawBuffer(GL_NONE); });

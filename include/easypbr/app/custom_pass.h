@@ -105,7 +105,8 @@ class PassInput {
 class Pass {
   public:
     virtual ~Pass() = default;
-    /// What it throws ends the picture; windows show it and keep the last picture that there was.
+    /// What it throws ends the picture; windows show it and keep the last picture that there was. Other
+    /// viewers may draw meanwhile; the one that calls it throws ArgumentError for another picture.
     virtual void draw(const PassInput& input) = 0;
     /// Changes whenever the pass would draw something else: windows draw again then.
     virtual uint64_t revision() const { return 0; }

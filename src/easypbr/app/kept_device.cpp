@@ -20,6 +20,12 @@ void KeptDevice::ask_for(DrawDevice device) {
     state_->asked = device;
 }
 
+void KeptDevice::refuse_nested() {
+    throw ArgumentError(
+        "this viewer is drawing: expected no other picture of it to be drawn within its passes and "
+        "callbacks");
+}
+
 bool KeptDevice::is_current() const {
     return state_->device->context && gl::Context::current_or_null() == state_->device->context.get();
 }

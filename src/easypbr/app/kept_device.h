@@ -1,9 +1,11 @@
 // The device that a session draws by, replaced when its OpenGL context is lost.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "easypbr/app/drawn.h"
 #include "easypbr/core/error.h"
@@ -34,13 +36,17 @@ class KeptDevice {
     void replace_lost();
 
     /// What a job returns that draws; it is done again where the context was lost. Where that is current
-    /// already, gl::ContextLost is left to who made it so.
+    /// already, gl::ContextLost is left to who made it so. Throws ArgumentError within a job of this thread,
+    /// which a pass or another function of the program's own may have asked for: the outer job's picture is
+    /// half drawn.
     template <class Job>
     auto keep(Job&& job) {
-        if (state_->keeps) return job();
+        if (state_->thread == std::this_thread::get_id()) refuse_nested();
+        if (state_->thread != std::thread::id()) return job();  // It waits for the context.
         const bool is_nested = is_current();
-        state_->keeps = true;
-        const std::unique_ptr<bool, void (*)(bool*)> end(&state_->keeps, [](bool* keeps) { *keeps = false; });
+        state_->thread = std::this_thread::get_id();
+        const std::unique_ptr<State, void (*)(State*)> end(
+            state_.get(), [](State* state) { state->thread = std::thread::id(); });
         for (;;) try {
                 replace_lost();
                 auto result = job();
@@ -55,6 +61,7 @@ class KeptDevice {
     }
 
   private:
+    [[noreturn]] static void refuse_nested();
     bool is_current() const;
     /// Why the context is lost when a drawing failed, which the driver is asked about: what it answers in a
     /// lost context may look like another error. Empty: it is not lost.
@@ -64,8 +71,8 @@ class KeptDevice {
     struct State {
         std::shared_ptr<Device> device = std::make_shared<Device>();
         uint64_t number = 1;
-        bool keeps = false;
-        int losses = 0;  ///< since a drawing succeeded
+        std::atomic<std::thread::id> thread{};  ///< that runs a job
+        int losses = 0;                         ///< since a drawing succeeded
         DrawDevice asked = DrawDevice::automatic;
     };
     std::shared_ptr<State> state_ = std::make_shared<State>();

@@ -260,14 +260,19 @@ Drawn Session::draw_once(const PictureOptions& options) {
 
 Drawn Session::draw_frame(const PictureOptions& options) {
     Drawn drawn = draw(options);
+    wait_for(drawn);
+    return drawn;
+}
+
+void Session::wait_for(const Drawn& drawn) {
     const Stopwatch watch(timing_.draw);
     drawn.wait();
-    return drawn;
 }
 
 Image Session::render(const PictureOptions& options) {
     return device_.keep([&] {
-        const Drawn drawn = draw_frame(options);
+        const Drawn drawn = draw_once(options);
+        wait_for(drawn);
         const Stopwatch watch(timing_.read);
         return drawn.picture();
     });

@@ -241,6 +241,7 @@ class Session {
     void latch_from(const Prepared& prepared);
     Vec2i size_or(std::optional<Vec2i> size) const;
     Drawn draw_once(const PictureOptions& options);
+    void wait_for(const Drawn& drawn);
     Refinement refine_once(const PictureOptions& options, bool finish, const RefinedMotion& motion);
     std::map<std::string, Image> render_layers_once(const std::vector<std::string>& names,
                                                     const std::vector<render::Layer>& layers,
