@@ -69,6 +69,16 @@ def test_another_layout_of_eigen_is_an_error_that_names_the_way_out(include, tmp
     run(*command, advice, cwd=tmp_path)
 
 
+def test_matrices_by_rows_are_an_error_that_names_the_way_out(include, tmp_path):
+    """The library takes and gives them by columns: all would be transposed."""
+    (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
+    command = [COMPILER, *FLAGS, "-isystem", eigen(), "-I", include, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16"]
+    run(*command, "array.cpp", cwd=tmp_path)
+    done = subprocess.run([*command, "-DEIGEN_DEFAULT_TO_ROW_MAJOR", "array.cpp"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode != 0
+    assert "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR" in done.stderr
+
+
 def test_a_private_header_is_refused(tmp_path):
     """check_includes.py says so when a public header includes one of the library's own, or of others."""
     tree = tmp_path / "tree"

@@ -53,7 +53,7 @@ class Image {
     PixelType type() const { return type_; }
     bool empty() const { return data_.empty(); }
     size_t pixel_count() const { return size_t(width_) * size_t(height_); }
-    size_t row_bytes() const { return size_t(width_) * channels_ * size_of(type_); }
+    size_t row_bytes() const { return size_t(width_) * size_t(channels_) * size_of(type_); }
 
     std::span<const std::byte> bytes() const { return data_; }
     std::span<std::byte> bytes() { return data_; }

@@ -10,6 +10,11 @@
 #error "EasyPBR: compile all of the program with -DEIGEN_MAX_STATIC_ALIGN_BYTES=16, as the library is"
 #endif
 
+// The library's arrays and matrices, and what is read of a program's own, are by columns.
+#ifdef EIGEN_DEFAULT_TO_ROW_MAJOR
+#error "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR; types may name Eigen::RowMajor"
+#endif
+
 namespace easypbr {
 
 using Vec2 = Eigen::Vector2f;

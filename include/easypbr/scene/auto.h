@@ -25,12 +25,16 @@ class Auto {
   public:
     Auto() = default;
     Auto(AutomaticTag) {}
-    Auto(FollowTag) : mode_(Mode::follow) {}
+    Auto(FollowTag) : mode_(Mode::followed) {}
     Auto(T value) : value_(std::move(value)), mode_(Mode::pinned) {}
     Auto(const char* text) requires std::same_as<T, std::string> : Auto(T(text)) {}
+    /// A pointer would be true: also the text "auto".
+    template <class Pointed>
+    Auto(Pointed*) requires std::same_as<T, bool>
+    = delete;
 
     bool is_pinned() const { return mode_ == Mode::pinned; }
-    bool is_follow() const { return mode_ == Mode::follow; }
+    bool is_follow() const { return mode_ == Mode::followed; }
 
     /// The pinned or latched value; nothing when it has still to be inferred.
     const std::optional<T>& value() const { return value_; }
@@ -40,7 +44,7 @@ class Auto {
 
     /// Keeps an inferred value. A pinned value stays as it is; one that follows keeps none.
     void latch(T inferred) {
-        if (mode_ == Mode::automatic) value_ = std::move(inferred);
+        if (mode_ == Mode::latched) value_ = std::move(inferred);
     }
 
     /// Forgets a latched value; a pinned one stays.
@@ -51,9 +55,9 @@ class Auto {
     bool operator==(const Auto&) const = default;
 
   private:
-    enum class Mode { automatic, follow, pinned };
+    enum class Mode { latched, followed, pinned };
     std::optional<T> value_;
-    Mode mode_ = Mode::automatic;
+    Mode mode_ = Mode::latched;
 };
 
 /// Stands for Auto<T> where the value is inferred: the value itself. One definition of a group of settings
@@ -70,6 +74,10 @@ class Override {
     Override(AutomaticTag) {}
     Override(FollowTag) {}
     Override(T value) : value_(std::move(value)) {}
+    /// As for Auto.
+    template <class Pointed>
+    Override(Pointed*) requires std::same_as<T, bool>
+    = delete;
 
     /// Nothing when automatic.
     const std::optional<T>& value() const { return value_; }
