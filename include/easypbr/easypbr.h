@@ -7,6 +7,7 @@
 #include "easypbr/app/input.h"
 #include "easypbr/app/picture.h"
 #include "easypbr/app/recorder.h"
+#include "easypbr/app/widgets.h"
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/image.h"

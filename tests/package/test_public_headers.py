@@ -8,7 +8,7 @@ import pytest
 
 from test_package import ROOT, run
 
-FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"]
+FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Werror", "-fsyntax-only"]
 COMPILER = shutil.which("g++") or shutil.which("c++")
 
 
@@ -77,6 +77,19 @@ def test_matrices_by_rows_are_an_error_that_names_the_way_out(include, tmp_path)
     done = subprocess.run([*command, "-DEIGEN_DEFAULT_TO_ROW_MAJOR", "array.cpp"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode != 0
     assert "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR" in done.stderr
+
+
+def test_comments_name_no_header_that_is_not_installed(include):
+    for name in headers(include):
+        for found in re.findall(r"\b\w+(?:/\w+)+\.h\b", (include / name).read_text()):
+            assert any((include / folder / found).is_file() for folder in ("", "easypbr")), f"{name}: {found}"
+
+
+def test_one_header_includes_the_others_as_the_documentation_says(include):
+    """docs/cpp.md: all but dataset/ground_truth.h."""
+    read = run(COMPILER, "-std=c++20", "-M", "-isystem", eigen(), "-I", include, include / "easypbr/easypbr.h", cwd=include).stdout
+    missing = [name for name in headers(include) if f"{include / name}" not in read.replace("\\\n", " ").split()]
+    assert missing == ["easypbr/dataset/ground_truth.h"]
 
 
 def test_a_private_header_is_refused(tmp_path):

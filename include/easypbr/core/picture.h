@@ -39,11 +39,14 @@ enum class Blend {
 
 /// What pictures are drawn by. The environment variable EASYPBR_DEVICE, "auto", "gl" or "cpu", stands for
 /// `automatic`.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"  // GCC takes enumerators for names in the namespace.
 enum class DrawDevice {
     automatic,  ///< a GPU where there is one, else the CPU
     gl,         ///< OpenGL: a GPU, or a driver that draws on the CPU
     cpu  ///< natively; OpenGL is loaded for what it alone can draw, and that is an error where it is missing
 };
+#pragma GCC diagnostic pop
 
 /// "auto", "gl", "cpu". Throws NameError with the nearest name.
 DrawDevice draw_device_named(const std::string& name);

@@ -29,7 +29,7 @@ struct TubeOptions {
 /// smooth: style.flat is unset in the result, and faces that it would draw flat get the normals of faces in
 /// place of their own. Points without an edge or a face are left out with a warning. Vertices at the same
 /// place that an edge joins count as one, and each pair is joined once. Throws ArgumentError when no edge has
-/// a length, for radii that are not above 0, and when both radius and radii are given; Interrupted.
+/// a length, for radii that are not above 0, and when both radius and radii are given.
 Mesh make_tubes(const Mesh& mesh, const TubeOptions& options = {});
 
 }  // namespace easypbr

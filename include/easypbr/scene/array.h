@@ -12,7 +12,7 @@
 
 namespace easypbr {
 
-uint64_t next_revision();  // see core/hash.h
+uint64_t next_revision();
 
 namespace detail {
 /// Throws ArgumentError unless a matrix has these columns. Eigen itself checks it in debug builds alone.

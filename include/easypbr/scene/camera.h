@@ -58,7 +58,7 @@ struct Camera {
     Vec3d position() const;
     Mat4d view() const;
 
-    /// What is drawn has to be warped: skew or distortion are not in projection_matrix() (app/lens.h).
+    /// What is drawn has to be warped: skew or distortion are not in projection_matrix().
     bool is_warped() const { return distortion || (intrinsics && intrinsics->skew != 0); }
 
     /// Reversed-Z projection for clip depth 0 (far) to 1 (near): z_ndc = near / z for perspective.

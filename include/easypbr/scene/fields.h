@@ -17,7 +17,10 @@ struct Style;
 
 /// A setting's value in transit. Enumerations are strings, colours and vectors lists of numbers.
 struct Value {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"  // GCC takes enumerators for names in the namespace.
     enum class State { given, automatic, follow };
+#pragma GCC diagnostic pop
     using Data = std::variant<bool, double, std::string, std::vector<double>>;
 
     Data data;
@@ -30,7 +33,7 @@ struct Value {
 /// A colormap is a text of parse_colormap(); its choices are the names.
 enum class FieldType { boolean, integer, number, color, vector, text, choice, colormap };
 
-/// What a field of a struct is: of the settings, or of a light (scene/light_table.h).
+/// What a field of a struct is: of the settings, or of a light.
 struct FieldInfo {
     std::string name;  ///< "group.name" of a setting
     std::string doc;   ///< one sentence

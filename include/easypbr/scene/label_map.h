@@ -36,7 +36,7 @@ class LabelMap {
              std::optional<int32_t> unlabelled = std::nullopt,
              UnknownLabels unknown = UnknownLabels::refused);
 
-    /// Labels 0, 1, 2, ... with these names, in generated colours (see scene/label_colors.h).
+    /// Labels 0, 1, 2, ... with these names, in generated colours.
     static LabelMap generated(const std::vector<std::string>& names, std::string name = "generated");
 
     const std::string& name() const { return name_; }

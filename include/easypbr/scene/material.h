@@ -46,8 +46,7 @@ struct SurfaceShader {
     bool operator==(const SurfaceShader&) const = default;
 };
 
-/// Factors multiply their textures. Colours are linear Rec.709. scene/material_table.h has the ranges and one
-/// description each.
+/// Factors multiply their textures. Colours are linear Rec.709.
 struct Material {
     std::string name;
     Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default is white beside colours, see has_default_color()

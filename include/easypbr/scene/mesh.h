@@ -31,7 +31,7 @@ class Mesh {
     /// An empty mesh.
     Mesh();
 
-    /// Reads a file (see io/mesh_io.h for formats and errors).
+    /// Reads a file (see io/mesh/mesh_io.h for formats and errors).
     explicit Mesh(const std::filesystem::path& path);
     explicit Mesh(const char* path);
 
@@ -65,8 +65,8 @@ class Mesh {
 
     /// Local positions; the offset stays.
     void set_V(Array3f V);
-    /// Local positions in double precision. Where float32 would lose what matters (scene/offset.h) they are
-    /// recentred: what is subtracted from them is added to the offset, so that offset + V does not move.
+    /// Local positions in double precision. Where float32 would lose what matters they are recentred:
+    /// what is subtracted from them is added to the offset, so that offset + V does not move.
     void set_positions(
         const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& positions);
     /// The same of a matrix with a dynamic number of columns. Throws ArgumentError unless there are 3.

@@ -93,7 +93,7 @@ struct MeshData {
     SplatArrays splats;
     std::vector<ScalarArray> scalars;           ///< any number of named values
     std::shared_ptr<const LabelMap> label_map;  ///< what the labels mean; none: generated colours
-    /// What was subtracted from positions far from zero, so that float32 holds them (scene/offset.h). Meshes
+    /// What was subtracted from positions far from zero, so that float32 holds them. Meshes
     /// of one scene are placed by it: the scene's own frame has an origin (Scene::origin), and a vertex
     /// stands at T_world_mesh * (V + offset - origin).
     Vec3d offset{0, 0, 0};

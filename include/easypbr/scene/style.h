@@ -15,10 +15,12 @@ enum class PointShape { round, square };
 enum class SizeUnit { pixels, world };
 enum class ColorBy { solid, vertex, texture, label, scalar, height, normal, uv, intensity };
 
-/// How an object is drawn. An automatic field follows from the data (resolve_style() in scene/draw_style.h).
+/// How an object is drawn. An automatic field follows from the data.
 /// The same struct in the settings overrides the style of every object. Colours are sRGB-encoded.
 struct Style {
-    Override<DrawMode> mode;     ///< automatic: natural_mode() in scene/draw_style.h
+    /// Automatic: voxels where the data have a voxel size, splats where they have those, faces as a mesh,
+    /// normals with tangents as surfels, edges as lines, vertices alone as points.
+    Override<DrawMode> mode;
     Override<bool> visible;      ///< automatic: yes
     Override<float> point_size;  ///< diameter in point_size_unit, above 0; automatic: by their spacing
     Override<SizeUnit> point_size_unit;  ///< automatic: pixels

@@ -129,12 +129,13 @@ class Viewer {
     void refit();
 
     /// Writes pictures from all around as one HTML file that is turned without a server. Returns the path.
-    /// Throws as remote::save_orbit_page() does.
+    /// Throws FileError when it cannot be written, ArgumentError for options that cannot be met.
     std::filesystem::path save_html(const std::filesystem::path& path,
                                     const app::OrbitPageOptions& options = {});
 
     /// Writes the visible and the hidden edges of the scene, as the camera sees it, as an SVG file. Returns
-    /// the path. Throws as drawing::save_line_drawing() does.
+    /// the path. It appears whole or not at all. Throws FileError when it cannot be written, ArgumentError
+    /// unless it is named .svg.
     std::filesystem::path save_svg(const std::filesystem::path& path,
                                    const app::LineDrawingOptions& options = {});
 
@@ -191,7 +192,9 @@ class Viewer {
     /// the loop goes on. Numbers for remove_callback().
     int before_draw(std::function<void()> function);
     int after_draw(std::function<void()> function);
-    /// See gui::LiveView::on_event(): mouse, keys, dropped files, another size.
+    /// Calls `handler` for whatever happens in the window (mouse, keys, dropped files, another size) but what
+    /// the panels take for themselves, before the view acts on it; true keeps the view from that. What it
+    /// throws becomes a notification. A number for remove_callback().
     int on_event(std::function<bool(const app::InputEvent&)> handler);
     void remove_callback(int number);
 

@@ -68,10 +68,9 @@ Mesh centered(const Mesh& mesh) {
 }
 
 Mesh with_size(const Mesh& mesh, double size) {
-    geometry::require_positive("normalize_size: size", size);
+    geometry::require_positive("size", size);
     const double longest = box_in_own_frame(mesh).sizes().maxCoeff();
-    if (!(longest > 0))
-        throw ArgumentError("normalize_size: expected vertices at different places, got all at one");
+    if (!(longest > 0)) throw ArgumentError("size: expected vertices at different places, got all at one");
     return moved(mesh, Eigen::Affine3d(Eigen::Scaling(size / longest)));
 }
 

@@ -17,7 +17,7 @@ namespace easypbr::io {
 /// - other text: a line "LABEL NAME R G B [A]" or "LABEL R G B ... NAME" for each class (FreeSurfer,
 /// ITK-SNAP,
 ///   CSV with or without a header), colours 0 to 255 or missing; or one name per line for labels 0, 1, 2, ...
-/// Classes without a colour get a generated one (scene/label_colors.h). A class called "unlabeled",
+/// Classes without a colour get a generated one. A class called "unlabeled",
 /// "unlabelled" or "unannotated" is the unlabelled one. The map's name is the file's stem unless it says
 /// another.
 /// Throws FileError; FormatError with the place.
