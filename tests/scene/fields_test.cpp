@@ -346,6 +346,30 @@ TEST(Auto, IsInferredLatchedPinnedOrFollowing) {
     EXPECT_FALSE(setting.is_pinned() || setting.is_follow() || setting.value());
 }
 
+// C++ has no other way to tell: an enumeration may hold any number of its underlying type.
+TEST(Settings, NumbersThatAreNoChoicesAreRefused) {
+    const auto message = [](const auto& change) -> std::string {
+        Settings settings;
+        change(settings);
+        try {
+            resolve(SceneSnapshot(), settings, Vec2i(8, 8));
+        } catch (const ArgumentError& error) {
+            return error.what();
+        }
+        return "accepted";
+    };
+    const std::string tone = message([](Settings& s) { s.tonemap.tone_operator = ToneOperator(44); });
+    EXPECT_NE(tone.find("'tonemap.operator': expected one of"), std::string::npos) << tone;
+    EXPECT_NE(tone.find("44"), std::string::npos) << tone;
+    const std::string below = message([](Settings& s) { s.tonemap.tone_operator = ToneOperator(-1); });
+    EXPECT_NE(below.find("got '-1'"), std::string::npos) << below;
+    const std::string mode = message([](Settings& s) { s.style.mode = DrawMode(99); });
+    EXPECT_NE(mode.find("got '99'"), std::string::npos) << mode;
+    Style style;
+    style.mode = DrawMode(99);
+    EXPECT_THROW(validate(style, "mesh: "), ArgumentError);
+}
+
 TEST(Settings, StudioLightsAreWarmAndCool) {
     const Settings settings;
     EXPECT_EQ(to_text(field("lights.key.color"), get(settings, "lights.key.color")), "#fff1e0");

@@ -34,6 +34,14 @@ Value other_value(const FieldInfo& field) {
     }
 }
 
+TEST(Light, OfATypeThatThereIsNotIsRefused) {
+    Light light;
+    light.type = LightType(9);
+    const std::string message = message_of(light);
+    EXPECT_NE(message.find("type"), std::string::npos) << message;
+    EXPECT_NE(message.find("9"), std::string::npos) << message;
+}
+
 // The fourteen members of Light, counted in light.h.
 TEST(LightTable, EachMemberHasItsOwnRow) {
     std::set<std::string> names;

@@ -65,9 +65,11 @@ Value::Data to_data(const Eigen::Matrix<Scalar, Rows, 1>& value) {
     return numbers;
 }
 
+/// A number for what is none of the enumerators: no choice has that name, see checked().
 template <class Enum>
 requires std::is_enum_v<Enum> Value::Data to_data(Enum value) {
-    return enum_names<Enum>()[size_t(value)];
+    const auto& names = enum_names<Enum>();
+    return size_t(value) < names.size() ? names[size_t(value)] : std::to_string(int(value));
 }
 
 inline void from_data(const Value::Data& data, bool& value) {
