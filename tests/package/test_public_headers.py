@@ -8,7 +8,8 @@ import pytest
 
 from test_package import ROOT, run
 
-FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Werror", "-fsyntax-only"]
+FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Werror",
+         "-fsyntax-only"]
 COMPILER = shutil.which("g++") or shutil.which("c++")
 
 
@@ -87,7 +88,8 @@ def test_comments_name_no_header_that_is_not_installed(include):
 
 def test_one_header_includes_the_others_as_the_documentation_says(include):
     """docs/cpp.md: all but dataset/ground_truth.h."""
-    read = run(COMPILER, "-std=c++20", "-M", "-isystem", eigen(), "-I", include, include / "easypbr/easypbr.h", cwd=include).stdout
+    command = [COMPILER, "-std=c++20", "-M", "-isystem", eigen(), "-I", include, include / "easypbr/easypbr.h"]
+    read = run(*command, cwd=include).stdout
     missing = [name for name in headers(include) if f"{include / name}" not in read.replace("\\\n", " ").split()]
     assert missing == ["easypbr/dataset/ground_truth.h"]
 
