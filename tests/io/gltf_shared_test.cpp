@@ -36,6 +36,13 @@ size_t add_sparse_positions(GltfBuilder& file, size_t count, const std::vector<u
     return file.json["accessors"].size() - 1;
 }
 
+/// Another mesh, of no node, that indexes positions too.
+void share(GltfBuilder& file, const Json& attributes) {
+    const Json other = {{"attributes", {{"POSITION", attributes["POSITION"]}}},
+                        {"indices", add_indices(file, {0, 1, 2})}};
+    file.json["meshes"].push_back({{"primitives", {other}}});
+}
+
 }  // namespace
 
 TEST(GltfShared, AMeshHasTheVerticesThatItIndexes) {
@@ -60,6 +67,7 @@ TEST(GltfShared, PrimitivesOfOneMeshShareVertices) {
     file.json["meshes"] = {{{"primitives",
                              {{{"attributes", attributes}, {"indices", last}, {"material", 0}},
                               {{"attributes", attributes}, {"indices", first}, {"material", 1}}}}}};
+    share(file, attributes);
     const MeshData mesh = node(decode(file));
     EXPECT_EQ(mesh.V, half(4)) << "in the order of the file";
     EXPECT_EQ(mesh.F, (Array3i::Dense{{3, 2, 0}, {2, 1, 0}}));
@@ -87,6 +95,7 @@ TEST(GltfShared, AttributesTargetsAndJointsGoWithTheirVertices) {
     file.json["meshes"] = {
         {{"primitives", {{{"attributes", attributes}, {"targets", targets}, {"indices", indices}}}},
          {"weights", {1}}}};
+    share(file, attributes);
     file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"translation", {0, 10, 0}}}};
     file.json["skins"] = {{{"joints", {1}}}};
     file.json["scenes"] = {{{"nodes", {0, 1}}}};
@@ -114,6 +123,7 @@ TEST(GltfShared, FindsRowsAmongFewAndMany) {
         file.json["meshes"] = {
             {{"primitives",
               {{{"attributes", attributes}, {"indices", add_indices(file, {9, 2, 5, 5, 2, 7})}}}}}};
+        share(file, attributes);
         const MeshData mesh = node(decode(file));
         EXPECT_EQ(mesh.V, (Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}})) << count;
         EXPECT_EQ(mesh.F, (Array3i::Dense{{3, 0, 1}, {1, 0, 2}})) << count;
@@ -133,6 +143,21 @@ TEST(GltfShared, WhatIsLeftOutTakesNoMemory) {
     }
     const MemoryScope scope("shared.glb", 1 << 20);
     EXPECT_EQ(decode(file).mesh.children().size(), 40u);
+}
+
+// What a mesh alone has keeps its numbers, as in other formats.
+TEST(GltfShared, AMeshKeepsVerticesThatNoneIndexes) {
+    GltfBuilder file;
+    const Json attributes = {{"POSITION", file.floats(two_squares, 3)}};
+    const Json primitive = {{"attributes", attributes}, {"indices", add_indices(file, {4, 5, 6})}};
+    file.json["meshes"] = {{{"primitives", {primitive}}}, {{"primitives", {primitive}}, {"name", "again"}}};
+    file.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
+    file.json["scenes"] = {{{"nodes", {0, 1}}}};
+    const io::LoadedScene scene = decode(file);
+    for (const size_t i : {0, 1}) {
+        EXPECT_EQ(node(scene, i).V.rows(), 8);
+        EXPECT_EQ(node(scene, i).F, (Array3i::Dense{{4, 5, 6}}));
+    }
 }
 
 TEST(GltfShared, RowsThatAreMissingAreABadFile) {

@@ -82,10 +82,12 @@ struct PrimitiveGroup {
 class MeshBuilder {
   public:
     /// `json`: of the whole mesh; `name`: its name, for messages.
-    MeshBuilder(GltfDocument& document, const GltfMaterials& materials, const Json& json, std::string name,
+    MeshBuilder(GltfDocument& document, const GltfMaterials& materials,
+                const std::set<size_t>& shared_positions, const Json& json, std::string name,
                 const PrimitiveGroup& group)
         : document_(document),
           materials_(materials),
+          shared_positions_(shared_positions),
           json_(json),
           name_(std::move(name)),
           group_(group),
@@ -159,11 +161,17 @@ class MeshBuilder {
         return found->second;
     }
 
-    /// Only what primitives index: other meshes may have the rest of the same accessors.
+    /// Whether a mesh has the rows that it does not index: somebody's vertices that keep their places.
+    bool keeps_all_rows(size_t block) const {
+        return group_.kind == Kind::faces && !shared_positions_.contains(*block_accessors_[block]->position);
+    }
+
     void read_blocks() {
         std::vector<std::vector<const std::vector<uint32_t>*>> lists(blocks_.size());
-        for (const Element& element : elements_)
-            lists[element.block].push_back(element.indices ? &element.index : nullptr);
+        for (const Element& element : elements_) {
+            const bool takes_all = !element.indices || keeps_all_rows(element.block);
+            lists[element.block].push_back(takes_all ? nullptr : &element.index);
+        }
         std::vector<GltfUsedRows> used;
         for (size_t b = 0; b < blocks_.size(); ++b) {
             const std::vector<int32_t>* rows = used.emplace_back(position_counts_[b], lists[b]).rows();
@@ -321,6 +329,7 @@ class MeshBuilder {
 
     GltfDocument& document_;
     const GltfMaterials& materials_;
+    const std::set<size_t>& shared_positions_;
     const Json& json_;
     std::string name_;
     const PrimitiveGroup& group_;
@@ -344,10 +353,11 @@ class MeshBuilder {
 class MeshReader {
   public:
     MeshReader(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
-               size_t index)
+               const std::set<size_t>& shared_positions, size_t index)
         : document_(document),
           materials_(materials),
           variants_(variants),
+          shared_positions_(shared_positions),
           json_(document.item("meshes", index)),
           name_(fmt::format("meshes[{}]", index)) {}
 
@@ -400,7 +410,7 @@ class MeshReader {
     }
 
     GltfMesh build(const PrimitiveGroup& group) {
-        return MeshBuilder(document_, materials_, json_, name_, group).build();
+        return MeshBuilder(document_, materials_, shared_positions_, json_, name_, group).build();
     }
 
     static void add_child(GltfMesh& mesh, const char* what, GltfMesh child) {
@@ -411,6 +421,7 @@ class MeshReader {
     GltfDocument& document_;
     const GltfMaterials& materials_;
     const GltfVariants& variants_;
+    const std::set<size_t>& shared_positions_;
     const Json& json_;
     std::string name_;
     bool has_faces_ = false;
@@ -421,8 +432,8 @@ class MeshReader {
 }  // namespace
 
 GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
-                        size_t index) {
-    return MeshReader(document, materials, variants, index).read();
+                        const std::set<size_t>& shared_positions, size_t index) {
+    return MeshReader(document, materials, variants, shared_positions, index).read();
 }
 
 }  // namespace easypbr::io

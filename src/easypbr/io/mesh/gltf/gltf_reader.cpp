@@ -19,6 +19,7 @@
 #include "easypbr/io/mesh/gltf/gltf_meshopt.h"
 #include "easypbr/io/mesh/gltf/gltf_placed.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
+#include "easypbr/io/mesh/gltf/gltf_used_rows.h"
 #include "easypbr/io/mesh/gltf/gltf_variants.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
@@ -74,6 +75,7 @@ class SceneReader {
           materials_(document),
           pointers_(document, materials_),
           variants_(document, variant),
+          shared_positions_(gltf_shared_positions(document)),
           meshes_(document.count("meshes")),
           lights_(read_gltf_lights(document)),
           cameras_(read_gltf_cameras(document)),
@@ -271,7 +273,8 @@ class SceneReader {
         Json content = document_.item("meshes", index);
         content.erase("name");
         const auto [same, is_new] = first_of_.try_emplace(content.dump(), index);
-        mesh = is_new ? read_gltf_mesh(document_, materials_, variants_, index) : *meshes_[same->second];
+        mesh = is_new ? read_gltf_mesh(document_, materials_, variants_, shared_positions_, index)
+                      : *meshes_[same->second];
         mesh->data.name = document_.text(document_.item("meshes", index), "name");
         return *mesh;
     }
@@ -312,6 +315,7 @@ class SceneReader {
     GltfMaterials materials_;
     GltfMaterialPointers pointers_;
     GltfVariants variants_;
+    std::set<size_t> shared_positions_;
     std::vector<std::optional<GltfMesh>> meshes_;
     std::map<std::string, size_t> first_of_;  ///< meshes, by their JSON without names
     std::vector<AnimatedItem<Light>> lights_;

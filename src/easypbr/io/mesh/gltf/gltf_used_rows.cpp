@@ -1,6 +1,8 @@
 #include "easypbr/io/mesh/gltf/gltf_used_rows.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 
 #include "easypbr/core/parallel.h"
 
@@ -11,7 +13,37 @@ namespace {
 constexpr size_t rows_per_index = 16;
 constexpr size_t renumbered_grain = 1 << 15;
 
+/// Accessors of indices by those of positions; none where a primitive has all rows.
+using IndicesByPosition = std::map<size_t, std::set<std::optional<size_t>>>;
+
+std::optional<size_t> accessor_in(const Json& object, const char* name) {
+    const Json* value = object.is_object() ? member(object, name) : nullptr;
+    if (!value || !value->is_number_unsigned()) return {};
+    return value->get<size_t>();
+}
+
+IndicesByPosition indices_by_position(const Json& mesh) {
+    IndicesByPosition used;
+    const Json* primitives = mesh.is_object() ? member(mesh, "primitives") : nullptr;
+    if (!primitives || !primitives->is_array()) return used;
+    for (const Json& primitive : *primitives) {
+        const Json* attributes = primitive.is_object() ? member(primitive, "attributes") : nullptr;
+        if (const auto position = attributes ? accessor_in(*attributes, "POSITION") : std::nullopt)
+            used[*position].insert(accessor_in(primitive, "indices"));
+    }
+    return used;
+}
+
 }  // namespace
+
+std::set<size_t> gltf_shared_positions(const GltfDocument& document) {
+    IndicesByPosition first_uses;
+    std::set<size_t> shared;
+    for (size_t i = 0; i < document.count("meshes"); ++i)
+        for (auto& [position, indices] : indices_by_position(document.item("meshes", i)))
+            if (first_uses.try_emplace(position, indices).first->second != indices) shared.insert(position);
+    return shared;
+}
 
 GltfUsedRows::GltfUsedRows(size_t count, std::span<const std::vector<uint32_t>* const> lists) {
     size_t index_count = 0;

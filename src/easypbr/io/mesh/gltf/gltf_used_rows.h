@@ -3,10 +3,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
+#include "easypbr/io/mesh/gltf/gltf_document.h"
+
 namespace easypbr::io {
+
+/// Accessors of positions that meshes index by different accessors: each of these meshes has a part of them.
+/// Of other accessors a mesh has all rows, those that no primitive indexes too. What is malformed is left
+/// out.
+std::set<size_t> gltf_shared_positions(const GltfDocument& document);
 
 class GltfUsedRows {
   public:
