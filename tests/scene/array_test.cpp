@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include "easypbr/core/error.h"
@@ -64,6 +66,25 @@ TEST(Array, OfOneColumnTakesVectorsOfBothKinds) {
     }
     EXPECT_EQ(Array1i(Eigen::Vector3i(7, 8, 9))[2], 9);
     EXPECT_TRUE(Array1f(Eigen::RowVectorXd()).empty());
+}
+
+TEST(Array, OfIntegersRefusesWhatInt32DoesNotHold) {
+    const std::string expected = "array: expected whole numbers from -2147483648 to 2147483647, got ";
+    using Wide = Eigen::Matrix<int64_t, Eigen::Dynamic, Eigen::Dynamic>;
+    EXPECT_EQ(refusal([] { Array3i(Wide{{4294967296, 1, 2}}); }), expected + "4294967296");
+    EXPECT_EQ(refusal([] { Array1i(Wide{{1, -2147483649, 2}}); }), expected + "-2147483649") << "of a row";
+    EXPECT_EQ(refusal([] { Array2i(Eigen::Matrix<uint32_t, 1, 2>(0, 2147483648u)); }),
+              expected + "2147483648");
+    EXPECT_EQ(refusal([] { Array2i(Eigen::MatrixXd{{0.5, 1}}); }), expected + "0.5");
+    EXPECT_EQ(refusal([] { Array1i(Eigen::VectorXf::Constant(3, 1e10f)); }), expected + "10000000000");
+    EXPECT_EQ(
+        refusal([] { Array1i(Eigen::VectorXd::Constant(3, std::numeric_limits<double>::quiet_NaN())); }),
+        expected + "nan");
+    const Array2i ends = Wide{{-2147483648LL, 2147483647}};
+    EXPECT_EQ(ends(0, 0), std::numeric_limits<int32_t>::min());
+    EXPECT_EQ(ends(0, 1), std::numeric_limits<int32_t>::max());
+    EXPECT_EQ(Array1i(Eigen::Matrix<uint8_t, 2, 1>(0, 255))[1], 255);
+    EXPECT_EQ(Array1i(Eigen::Array<bool, 2, 1>(false, true))[1], 1);
 }
 
 TEST(Array, MeshesKeepWhatTheyHadWhenAnArrayIsRefused) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <random>
 
 #include "easypbr/core/error.h"
@@ -44,6 +46,36 @@ TEST(Offset, KeepsMillimetresOfUtmCoordinates) {
     EXPECT_LE((back - given).cwiseAbs().maxCoeff(), std::exp2(-14.0));
     // Without an offset they would be half a metre apart there.
     EXPECT_GT((given.cast<float>().cast<double>() - given).cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(Offset, IsGivenByEveryWayToSetDoubles) {
+    // The largest distance of a vertex from where it was given.
+    const auto error_of = [](const Mesh& mesh, const Eigen::MatrixXd& given) {
+        const Eigen::MatrixXd back = mesh.V().cast<double>().rowwise() + mesh.offset().transpose();
+        return (back - given).cwiseAbs().maxCoeff();
+    };
+    const Eigen::MatrixXd V{
+        {691000.1, 5335000.1, 520}, {691000.2, 5335000.1, 520}, {691000.1, 5335000.2, 520}};
+    const Eigen::MatrixXi F{{0, 1, 2}};
+    // Local coordinates are below 1: half the spacing of float32 numbers there is 2^-25, that of doubles
+    // below 2^23 is 2^-30.
+    const double rounding = std::exp2(-24.0);
+    const Mesh made(V, F);
+    EXPECT_LE(error_of(made, V), rounding);
+    EXPECT_EQ(made.F().rows(), 1);
+    Mesh set;
+    set.set_V(V);
+    EXPECT_LE(error_of(set, V), rounding);
+    EXPECT_LE(error_of(Mesh(Array3d(V), F), V), rounding);
+    EXPECT_LE(error_of(Mesh(V.array() * 1.0, F), V), rounding);
+    EXPECT_LE(error_of(Mesh(Positions(V), Array3i()), V), rounding);
+    // Beyond 2^24 float32 has not every whole number.
+    const Eigen::Matrix<int64_t, Eigen::Dynamic, 3> whole{{100'000'001, 0, 0}, {100'000'002, 0, 0}};
+    EXPECT_EQ(error_of(Mesh(whole, Array3i()), whole.cast<double>()), 0);
+    // Floats are taken as they are, and without vertices any number of columns fits.
+    EXPECT_EQ(Mesh(Eigen::MatrixXf(V.cast<float>()), F).offset(), Vec3d::Zero());
+    EXPECT_EQ(Mesh(Eigen::MatrixXd(), Eigen::MatrixXi()).V().rows(), 0);
+    EXPECT_THROW(Mesh(Eigen::MatrixXd::Zero(3, 2), F), ArgumentError);
 }
 
 TEST(Offset, IsRoundedToADecimalPlaceThatFitsTheExtent) {

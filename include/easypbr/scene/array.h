@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -20,6 +22,16 @@ inline void require_columns(Eigen::Index rows, Eigen::Index cols, int expected) 
     if (cols != expected)
         throw ArgumentError("array: expected n x " + std::to_string(expected) + ", got " +
                             std::to_string(rows) + " x " + std::to_string(cols));
+}
+
+/// A number as int32. Throws ArgumentError for one that int32 does not hold.
+inline int32_t int32_of(double value) {
+    if (value >= -2147483648.0 && value <= 2147483647.0 && double(int32_t(value)) == value)
+        return int32_t(value);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.15g", value);
+    throw ArgumentError(
+        std::string("array: expected whole numbers from -2147483648 to 2147483647, got ").append(text));
 }
 
 /// How Eigen allocates in a program that is compiled with these flags: 0 by malloc(), else with this
@@ -52,7 +64,8 @@ class Array
     Array(Dense values) : Array(std::make_shared<const Kept>(std::move(values))) {}
 
     /// A copy of any Eigen expression of fitting shape: n x Cols, or n x 1 or 1 x n for one column. Without
-    /// rows any number of columns fits. Throws ArgumentError for other shapes.
+    /// rows any number of columns fits. Throws ArgumentError for other shapes, and where an array of int32 is
+    /// given numbers that int32 does not hold: NaN, fractions, and those out of its range.
     template <class Derived>
     requires(!std::is_base_of_v<Map, Derived> && !std::is_same_v<Dense, Derived>)
         Array(const Eigen::DenseBase<Derived>& values)
@@ -85,14 +98,25 @@ class Array
     static Dense dense_of(const Derived& values) {
         // What Eigen knows when it compiles, it checks then.
         if constexpr (Cols == Eigen::Dynamic || Derived::ColsAtCompileTime != Eigen::Dynamic) {
-            return Dense(values.template cast<Scalar>());
+            return Dense(converted(values));
         } else {
             if (values.rows() == 0) return Dense(0, Cols);
             if constexpr (Cols == 1)
-                if (values.rows() == 1) return Dense(values.row(0).transpose().template cast<Scalar>());
+                if (values.rows() == 1) return Dense(converted(values.row(0).transpose()));
             detail::require_columns(values.rows(), values.cols(), Cols);
-            return Dense(values.template cast<Scalar>());
+            return Dense(converted(values));
         }
+    }
+
+    /// The expression with numbers of this array's type.
+    template <class Derived>
+    static auto converted(const Derived& values) {
+        using Given = typename Derived::Scalar;
+        using Limits = std::numeric_limits<Given>;
+        if constexpr (std::is_same_v<Scalar, int32_t> && !(Limits::is_integer && Limits::digits <= 31))
+            return values.unaryExpr([](const Given& value) { return detail::int32_of(double(value)); });
+        else
+            return values.template cast<Scalar>();
     }
 
     explicit Array(std::shared_ptr<const Kept> kept)

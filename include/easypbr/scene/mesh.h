@@ -37,6 +37,12 @@ class Mesh {
 
     /// Vertices (n x 3) and triangles (m x 3). Throws ArgumentError as validate() does.
     Mesh(Array3f V, Array3i F);
+    /// The same of vertices in double precision, or of integers: far from zero they are recentred as
+    /// set_positions() does.
+    template <class Derived>
+    requires(!std::is_same_v<typename Derived::Scalar, float>)
+        Mesh(const Eigen::DenseBase<Derived>& V, Array3i F)
+        : Mesh(recentred(Array3d(V.derived()), F)) {}
 
     explicit Mesh(MeshData data);
 
@@ -65,6 +71,12 @@ class Mesh {
 
     /// Local positions; the offset stays.
     void set_V(Array3f V);
+    /// Those of another type than float, as set_positions() takes them.
+    template <class Derived>
+    requires(!std::is_same_v<typename Derived::Scalar, float>) void set_V(
+        const Eigen::DenseBase<Derived>& V) {
+        set_positions(Array3d(V.derived()));
+    }
     /// Local positions in double precision. Where float32 would lose what matters they are recentred:
     /// what is subtracted from them is added to the offset, so that offset + V does not move.
     void set_positions(
@@ -73,9 +85,7 @@ class Mesh {
     template <class Derived>
     requires(Derived::ColsAtCompileTime ==
              Eigen::Dynamic) void set_positions(const Eigen::MatrixBase<Derived>& positions) {
-        using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-        detail::require_columns(positions.rows(), positions.cols(), 3);
-        set_positions(Positions(positions.template cast<double>()));
+        set_positions(Array3d(positions.derived()));
     }
     Vec3d offset() const;
     void set_offset(const Vec3d& offset);
@@ -168,6 +178,7 @@ class Mesh {
 
   private:
     struct Shared;
+    static MeshData recentred(const Array3d& V, const Array3i& F);
     void add_doubles(const std::string& name, const Array1d& values);
     explicit Mesh(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 

@@ -75,7 +75,9 @@ struct MeshData {
     std::string name;
     std::filesystem::path source;  ///< the file it was read from, absolute; empty for a mesh made in memory
 
-    Array3f V;   ///< n x 3 positions, local: offset + V are the coordinates that the mesh was given
+    /// n x 3 positions, local: offset + V are the coordinates that the mesh was given. Doubles become floats
+    /// here: far from zero Mesh(V, F), Mesh::set_V() and set_positions() keep what matters of them.
+    Array3f V;
     Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
     ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
     Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty

@@ -52,6 +52,15 @@ Mesh::Mesh(Array3f V, Array3i F)
           return data;
       }()) {}
 
+MeshData Mesh::recentred(const Array3d& V, const Array3i& F) {
+    LocalPositions local = local_positions(V);
+    MeshData data;
+    data.V = std::move(local.V);
+    data.offset = local.offset;
+    data.F = F;
+    return data;
+}
+
 uint64_t Mesh::identity() const {
     return shared_->identity;
 }
