@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace easypbr::gpu::line_segments_test {
 namespace {
@@ -20,6 +21,10 @@ MeshData split_square(float apart) {
 TEST(Wireframe, TakesVerticesThatWereSplitFromOneForOne) {
     MeshData mesh = split_square(0);
     EXPECT_EQ(wireframe_segments(mesh).size(), 5u) << "four sides and the diagonal";
+    constexpr int32_t most = std::numeric_limits<int32_t>::max();
+    MeshData far = mesh;
+    far.source_vertex = Array1i(Array1i::Dense{{most}, {1}, {7}, {most}, {7}, {0}});
+    EXPECT_EQ(wireframe_segments(far).size(), 5u) << "whatever the numbers are";
     mesh.source_face = Array1i(Array1i::Dense{{0}, {0}});
     EXPECT_EQ(wireframe_segments(mesh).size(), 4u) << "the diagonal is inside of the polygon";
     MeshData moved = split_square(1);

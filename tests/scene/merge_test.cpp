@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "easypbr/core/color.h"
@@ -242,6 +243,11 @@ TEST(Merged, SourcesOfDifferentMeshesStayDifferent) {
     split.source_vertex = Array1i::Dense{{5, 0, 5}};
     const MeshData both = merged(std::vector{split, triangle(), split});
     EXPECT_EQ(Array1i::Dense(both.source_vertex), (Array1i::Dense{{5, 0, 5, 6, 7, 8, 14, 9, 14}}));
+    // Numbers for which 32 bits would not do are counted anew.
+    constexpr int32_t most = std::numeric_limits<int32_t>::max();
+    split.source_vertex = Array1i::Dense{{most, 0, most}};
+    const MeshData far = merged(std::vector{split, triangle(), split});
+    EXPECT_EQ(Array1i::Dense(far.source_vertex), (Array1i::Dense{{1, 0, 1, 2, 3, 4, 6, 5, 6}}));
 }
 
 TEST(Merged, LabelsOfFacesAndOfVerticesDoNotMix) {

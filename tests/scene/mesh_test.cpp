@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -88,6 +89,63 @@ TEST(Mesh, NamesTheArrayThatDoesNotFit) {
                   d.parts = {{"wing", 0, 1, 1}};
               }).find("material index"),
               std::string::npos);
+}
+
+TEST(Mesh, RefusesWhatCannotBeDrawn) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(message_of([](MeshData& d) {
+                  d.source_vertex = Array1i::Dense{{0}, {-1}, {0}};
+              }),
+              "mesh array source_vertex: expected numbers of vertices from 0 on, got -1 in row 1 of 3");
+    EXPECT_EQ(message_of([](MeshData& d) { d.voxel_size = -1; }),
+              "mesh voxel_size: expected a finite number of at least 0, got -1");
+    EXPECT_NE(message_of([](MeshData& d) { d.voxel_size = nan; }), "valid");
+    EXPECT_NE(message_of([](MeshData& d) { d.voxel_size = std::numeric_limits<float>::infinity(); }),
+              "valid");
+    EXPECT_EQ(message_of([](MeshData& d) { d.front = Vec3d(0, double(nan), 0); }),
+              "mesh front: expected finite numbers, got (0, nan, 0)");
+    EXPECT_NE(message_of([](MeshData& d) { d.up.x() = double(nan); }), "valid");
+    EXPECT_EQ(message_of([](MeshData& d) { d.T_parent_mesh.matrix()(3, 3) = 2; }),
+              "mesh T_parent_mesh: expected a last row of (0, 0, 0, 1)");
+    Mesh mesh(triangle());
+    Eigen::Affine3d T = Eigen::Affine3d::Identity();
+    T.translation().x() = double(nan);
+    EXPECT_THROW(mesh.set_T_parent_mesh(T), ArgumentError);
+    EXPECT_TRUE(mesh.T_parent_mesh().matrix().isIdentity(0)) << "as before";
+}
+
+TEST(Mesh, PartsCoverTheFacesWithoutOverlap) {
+    const auto message = [](std::vector<MeshPart> parts) {
+        return message_of([&](MeshData& d) {
+            d.F = Faces(Faces{{0, 1, 2}}.replicate(4, 1));
+            d.parts = std::move(parts);
+        });
+    };
+    EXPECT_EQ(message({{"b", 2, 2, 0}, {"none", 1, 0, 0}, {"a", 0, 2, 0}}), "valid") << "in any order";
+    EXPECT_EQ(
+        message({{"a", 0, 3, 0}, {"b", 2, 2, 0}}),
+        "mesh parts: expected each of the 4 faces in one part, got faces 2 to 3 in two, the second 'b'");
+    EXPECT_EQ(message({{"a", 0, 1, 0}, {"b", 2, 2, 0}}),
+              "mesh parts: expected each of the 4 faces in one part, got faces 1 to 2 in none");
+    EXPECT_EQ(message({{"a", 0, 3, 0}}),
+              "mesh parts: expected each of the 4 faces in one part, got faces 3 to 4 in none");
+}
+
+TEST(Mesh, TexturesHavePixels) {
+    MeshData data = triangle();
+    data.materials.resize(1);
+    data.materials[0].name = "wood";
+    data.materials[0].roughness_texture.image = std::make_shared<const Image>();
+    try {
+        validate(data);
+        FAIL() << "taken";
+    } catch (const ArgumentError& error) {
+        EXPECT_STREQ(error.what(),
+                     "material 'wood'.roughness_texture: expected an image with pixels, or none, "
+                     "got an empty one");
+    }
+    data.materials[0].roughness_texture.image = std::make_shared<const Image>(1, 1, 1, PixelType::u8);
+    EXPECT_NO_THROW(validate(data));
 }
 
 TEST(Mesh, LabelsAndScalarsBelongToVerticesOrFaces) {

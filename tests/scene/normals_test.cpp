@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "easypbr/core/error.h"
@@ -150,6 +151,29 @@ TEST(VertexNormals, IndicesOutOfRangeAreRefused) {
         mesh.V = V, mesh.F = F, mesh.source_vertex = Array1i::Dense{{0}, {1}, {0}};
         EXPECT_THROW(smooth_normals(mesh), ArgumentError) << index;
     }
+}
+
+TEST(VertexNormals, OfSplitVerticesDependOnNoNumber) {
+    // Two faces at a right angle whose common edge is split: half way between both, by equal areas and
+    // angles.
+    MeshData mesh;
+    mesh.V = Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.F = Array3i::Dense{{0, 1, 2}, {3, 4, 5}};
+    constexpr int32_t most = std::numeric_limits<int32_t>::max();
+    for (const Array1i::Dense& source :
+         {Array1i::Dense{{0, 1, 2, 0, 2, 3}}, Array1i::Dense{{7, 3, most, 7, most, most - 1}}}) {
+        mesh.source_vertex = source;
+        const Array3f N = smooth_normals(mesh);
+        EXPECT_TRUE((N.row(0).array() == N.row(3).array()).all());
+        EXPECT_TRUE((N.row(2).array() == N.row(4).array()).all());
+        EXPECT_NEAR(N(0, 0), std::sqrt(0.5f), 1e-5f) << "angles: below 1e-5 by Abramowitz and Stegun 4.4.47";
+        EXPECT_EQ(N(1, 2), 1);
+        EXPECT_EQ(N(5, 0), 1);
+    }
+    mesh.source_vertex = Array1i::Dense{{0, 1, 2, 0, -2, 3}};
+    EXPECT_THROW(smooth_normals(mesh), ArgumentError);
+    mesh.source_vertex = Array1i::Dense{{0, 1, 2, 0}};
+    EXPECT_THROW(smooth_normals(mesh), ArgumentError);
 }
 
 TEST(VertexNormals, DoNotDependOnTheNumberOfThreads) {

@@ -18,7 +18,7 @@ enum class Filter { linear, nearest };
 enum class AlphaMode { opaque, mask, blend };
 
 /// An image with its sampler and UV transform. uv (0, 0) is the lower left corner of the image (OBJ, PLY;
-/// the glTF loader flips v). Empty when `image` is null.
+/// the glTF loader flips v). Empty when `image` is null; an image without pixels is refused.
 struct Texture {
     std::shared_ptr<const Image> image;
     /// Where the image came from, for messages and saving; may be empty. Absolute where the library read it.

@@ -130,12 +130,13 @@ class Mesh {
     void set_style(const Style& style);
 
     Eigen::Affine3d T_parent_mesh() const;
+    /// Throws ArgumentError when T is not finite or its last row is not 0 0 0 1.
     void set_T_parent_mesh(const Eigen::Affine3d& T);
 
     /// Pose in the world: those of all parents, applied to T_parent_mesh.
     Eigen::Affine3d T_world_mesh() const;
-    /// Chooses T_parent_mesh so that the pose in the world is T. Throws ArgumentError when T is not finite or
-    /// a parent's pose cannot be inverted.
+    /// Chooses T_parent_mesh so that the pose in the world is T. Throws ArgumentError when T is not finite,
+    /// its last row is not 0 0 0 1 or a parent's pose cannot be inverted.
     void set_T_world_mesh(const Eigen::Affine3d& T);
 
     // Steps of motion, in the parent's frame, which is the world for a mesh without a parent; children move

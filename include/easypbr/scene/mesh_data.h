@@ -28,8 +28,9 @@ struct MeshPart {
 
 /// Named values, one for each vertex or one for each face: curvature, temperature, error. NaN: no value.
 struct ScalarArray {
-    std::string name;        ///< not empty, unique within a mesh
-    Array1f values;          ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
+    std::string name;  ///< not empty, unique within a mesh
+    Array1f values;  ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices; without
+                     ///< rows there are none
     bool from_file = false;  ///< came with a file or data set: colours the mesh only when asked for
 };
 
@@ -105,8 +106,10 @@ struct MeshData {
     Vec3d front{0, 0, 0};
     float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
-    Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
-    Array1i source_face;  ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
+    /// n x 1 index, from 0 on, of the file's vertex that each vertex came from; empty: the same.
+    Array1i source_vertex;
+    /// m x 1 index, from 0 on, of the file's polygon that each triangle came from; empty: the same.
+    Array1i source_face;
     RestShape rest_shape;
 
     std::vector<Material> materials;  ///< at least one as soon as the mesh is drawn; a default one is added
@@ -128,9 +131,10 @@ inline PerElement element_of(const MeshData& data, Eigen::Index rows) {
 const ScalarArray& scalar_named(const MeshData& data, const std::string& name);
 
 /// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
-/// together, when a face or edge index is out of range, when a position or the offset is not finite, when
-/// a label is not in the label map (see LabelMap::accepts), or when a material or the style has a value
-/// outside of its range.
+/// together, when a face or edge index is out of range, when a source is below 0, when parts do not cover
+/// the faces or overlap, when a position, offset, direction, pose or voxel size is not finite, when the last
+/// row of the pose is not 0 0 0 1, when a label is not in the label map (see LabelMap::accepts), when a
+/// material or the style has a value outside of its range, or when the image of a texture is empty.
 void validate(const MeshData& data);
 /// The same, without reading arrays again that `data` shares with data known to be valid.
 void validate(const MeshData& data, const MeshData& valid);

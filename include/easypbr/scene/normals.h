@@ -15,7 +15,8 @@ namespace easypbr {
 Array3f vertex_normals(const Array3f& V, const Array3i& F);
 
 /// vertex_normals() of a mesh: vertices that were split from one (source_vertex), as at seams of texture
-/// coordinates, count as one and get the same normal.
+/// coordinates, count as one and get the same normal. Throws ArgumentError for arrays that validate() refuses
+/// by their shapes, and for a source below 0.
 Array3f smooth_normals(const MeshData& mesh);
 
 /// Unit normals of faces (m x 3); (0, 0, 1) where a face has no area.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::gpu {
@@ -47,8 +48,8 @@ struct Edge {
 /// For each vertex the first one that was split from the same (source_vertex) and stands at the same place;
 /// empty: each is one of its own.
 std::vector<int32_t> united_vertices(const MeshData& mesh) {
-    const Array1i& source = mesh.source_vertex;
-    if (source.empty()) return {};
+    if (mesh.source_vertex.empty()) return {};
+    const Array1i source = numbers_below(2 * mesh.source_vertex.rows(), mesh.source_vertex);
     std::vector<int32_t> first(size_t(source.maxCoeff()) + 1, -1), united(size_t(source.rows()));
     for (int32_t i = 0; i < int32_t(source.rows()); ++i) {
         int32_t& known = first[size_t(source(i))];

@@ -414,6 +414,8 @@ Animations::Places Animations::places(const std::vector<Pose>& poses) const {
             // What hangs from it goes with the node.
             T_mesh_nodes[i] = T_parent_mesh.inverse() * T_parent_node;
         }
+        // Of a file with scales beyond all numbers.
+        if (!T_parent_mesh.matrix().allFinite()) T_parent_mesh.setIdentity();
         out.T_world_meshes[i] = T_world_parent * T_parent_mesh;
     }
     return out;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/mesh_arrays.h"
@@ -69,10 +70,13 @@ Array1i sources_of(const std::vector<Mixture>& vertices) {
 /// The sources of vertices that are left whole; what is mixed comes from none, and has a number of its own.
 Array1i continued_sources(const Array1i& source_vertex, const std::vector<Mixture>& vertices) {
     if (source_vertex.empty()) return {};
-    int32_t next = source_vertex.maxCoeff();
+    // So that the last new number is one of 32 bits.
+    const Array1i given =
+        numbers_below(int64_t(std::numeric_limits<int32_t>::max()) - int64_t(vertices.size()), source_vertex);
+    int32_t next = given.maxCoeff();
     Array1i::Dense source(Eigen::Index(vertices.size()));
     for (size_t i = 0; i < vertices.size(); ++i)
-        source[Eigen::Index(i)] = vertices[i].weight[0] == 1 ? source_vertex(vertices[i].vertex[0]) : ++next;
+        source[Eigen::Index(i)] = vertices[i].weight[0] == 1 ? given(vertices[i].vertex[0]) : ++next;
     return Array1i(std::move(source));
 }
 

@@ -147,12 +147,16 @@ std::span<const MaterialTexture> replaceable_textures() {
 }
 
 void validate(const Material& material) {
-    for_each_problem(material, [&](const char* name, const std::string& expected, const std::string& given,
-                                   const float&, float) {
+    const auto refuse = [&](const std::string& name, const std::string& expected, const std::string& given) {
         throw ArgumentError(fmt::format("material{}.{}: expected {}, got {}",
                                         material.name.empty() ? "" : fmt::format(" '{}'", material.name),
                                         name, expected, given));
-    });
+    };
+    for_each_problem(material, [&](const char* name, const std::string& expected, const std::string& given,
+                                   const float&, float) { refuse(name, expected, given); });
+    for (const MaterialTexture& row : textures)
+        if (const auto& image = (material.*row.texture).image; image && image->empty())
+            refuse(fmt::format("{}_texture", row.name), "an image with pixels, or none", "an empty one");
 }
 
 std::vector<std::string> clamp_to_ranges(Material& material) {

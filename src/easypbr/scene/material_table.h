@@ -51,7 +51,8 @@ std::span<const MaterialTexture> material_textures();
 /// Those with a setting.
 std::span<const MaterialTexture> replaceable_textures();
 
-/// Throws ArgumentError that names the material, the value and its range, when one is outside of it.
+/// Throws ArgumentError that names the material, the value and its range, when one is outside of it,
+/// and for a texture whose image is empty.
 void validate(const Material& material);
 
 /// Brings values from a file into their ranges; one sentence about each that was changed.

@@ -91,7 +91,11 @@ Array1i joined_sources(Meshes meshes, Array1i MeshData::*member, PerElement elem
         if (is_empty(mesh))
             std::iota(block.begin(), block.end(), shift);
         else
-            block = (mesh.*member).array() + shift;
+            // So that the numbers of all that follow are of 32 bits, too.
+            block = numbers_below(std::numeric_limits<int32_t>::max() - shift - (result.rows() - row - count),
+                                  mesh.*member)
+                        .array() +
+                    shift;
         row += count;
         shift = block.maxCoeff() + 1;
     }

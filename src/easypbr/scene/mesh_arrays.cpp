@@ -4,6 +4,7 @@
 #include <numeric>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace easypbr {
 
@@ -33,6 +34,19 @@ void repeat_vertices(std::span<const int32_t> rows, MeshData& mesh) {
             Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(rows.data(), Eigen::Index(rows.size())));
     else
         mesh.source_vertex = rows_of(mesh.source_vertex, rows);
+}
+
+Array1i numbers_below(int64_t limit, const Array1i& numbers) {
+    if (numbers.empty() || numbers.maxCoeff() < limit) return numbers;
+    std::vector<int32_t> different(numbers.begin(), numbers.end());
+    std::sort(different.begin(), different.end());
+    different.erase(std::unique(different.begin(), different.end()), different.end());
+    Array1i::Dense ranks(numbers.rows());
+    parallel_for(size_t(ranks.size()), 1 << 15, [&](size_t i) {
+        const auto found = std::lower_bound(different.begin(), different.end(), numbers[Eigen::Index(i)]);
+        ranks[Eigen::Index(i)] = int32_t(found - different.begin());
+    });
+    return Array1i(std::move(ranks));
 }
 
 void tell_faces_from_vertices(MeshData& mesh) {

@@ -25,8 +25,14 @@ SplatArrays rows_of(const SplatArrays& splats, std::span<const int32_t> rows);
 /// Throws ArgumentError that names the first row of F with an index that is no vertex's.
 void require_faces(const Array3i& F, Eigen::Index vertices);
 
-/// Throws ArgumentError that names the first number in source_face below 0.
-void require_polygons(const Array1i& source_face);
+/// Throws ArgumentError that names the first number below 0 in source_face or source_vertex.
+void require_sources(const char* name, const Array1i& sources, const char* of);
+/// Throws ArgumentError unless a pose is finite and its last row 0 0 0 1.
+void require_pose(const char* name, const Eigen::Affine3d& T);
+
+/// Numbers from 0 on that are equal where the given ones are, in the same order, and below `limit` or the
+/// number of rows: the given ones where these are below it.
+Array1i numbers_below(int64_t limit, const Array1i& numbers);
 /// Throws ArgumentError that names an array with another shape than validate() takes.
 void require_shapes(const MeshData& mesh);
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string_view>
+#include <vector>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -174,6 +176,27 @@ void require_labels(const Array1i& L, const LabelMap& map) {
                     label, row, L.rows(), map.name(), map.range_text(), advice_on(label, map)));
 }
 
+/// Throws unless each face is in one part.
+void require_cover(const MeshData& data) {
+    std::vector<MeshPart> parts = data.parts;
+    if (parts.empty()) return;
+    std::ranges::sort(parts, {}, &MeshPart::first_face);
+    int64_t end = 0;
+    const auto require_begin = [&](int64_t begin, const std::string& name) {
+        if (begin != end)
+            throw ArgumentError(fmt::format(
+                "mesh parts: expected each of the {} faces in one part, got faces {} to {} in {}{}",
+                data.F.rows(), std::min(begin, end), std::max(begin, end), begin > end ? "none" : "two",
+                begin > end ? "" : fmt::format(", the second '{}'", name)));
+    };
+    for (const MeshPart& part : parts) {
+        if (part.face_count == 0) continue;
+        require_begin(part.first_face, part.name);
+        end = int64_t(part.first_face) + part.face_count;
+    }
+    require_begin(data.F.rows(), {});
+}
+
 void require_parts(const MeshData& data) {
     for (const MeshPart& part : data.parts) {
         const int64_t end = int64_t(part.first_face) + part.face_count;
@@ -186,6 +209,13 @@ void require_parts(const MeshData& data) {
             throw ArgumentError(fmt::format("mesh part '{}': expected a material index from 0 to {}, got {}",
                                             part.name, materials - 1, part.material));
     }
+    require_cover(data);
+}
+
+void require_finite(const char* name, const Vec3d& v) {
+    if (!v.allFinite())
+        throw ArgumentError(
+            fmt::format("mesh {}: expected finite numbers, got ({}, {}, {})", name, v.x(), v.y(), v.z()));
 }
 
 template <class Array>
@@ -199,13 +229,17 @@ void require_faces(const Array3i& F, Eigen::Index vertices) {
     require_indices("F", F, vertices);
 }
 
-void require_polygons(const Array1i& source_face) {
-    const size_t row =
-        first_bad_row(source_face.rows(), [&](size_t i) { return source_face(Eigen::Index(i)) < 0; });
+void require_sources(const char* name, const Array1i& sources, const char* of) {
+    const size_t row = first_bad_row(sources.rows(), [&](size_t i) { return sources(Eigen::Index(i)) < 0; });
     if (row == no_row) return;
-    throw ArgumentError(
-        fmt::format("mesh array source_face: expected numbers of polygons from 0 on, got {} in row {} of {}",
-                    source_face(Eigen::Index(row)), row, source_face.rows()));
+    throw ArgumentError(fmt::format("mesh array {}: expected numbers of {} from 0 on, got {} in row {} of {}",
+                                    name, of, sources(Eigen::Index(row)), row, sources.rows()));
+}
+
+void require_pose(const char* name, const Eigen::Affine3d& T) {
+    if (!T.matrix().allFinite()) throw ArgumentError(fmt::format("mesh {}: expected finite numbers", name));
+    if (T.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        throw ArgumentError(fmt::format("mesh {}: expected a last row of (0, 0, 0, 1)", name));
 }
 
 void validate(const MeshData& data) {
@@ -214,14 +248,21 @@ void validate(const MeshData& data) {
 
 void validate(const MeshData& data, const MeshData& valid) {
     require_shapes(data);
-    if (!data.offset.allFinite())
-        throw ArgumentError(fmt::format("mesh offset: expected finite numbers, got ({}, {}, {})",
-                                        data.offset.x(), data.offset.y(), data.offset.z()));
+    require_finite("offset", data.offset);
+    require_finite("up", data.up);
+    require_finite("front", data.front);
+    if (!(data.voxel_size >= 0) || !std::isfinite(data.voxel_size))
+        throw ArgumentError(
+            fmt::format("mesh voxel_size: expected a finite number of at least 0, got {}", data.voxel_size));
+    require_pose("T_parent_mesh", data.T_parent_mesh);
     const bool same_V = same_array(data.V, valid.V);
     const bool same_count = data.V.rows() == valid.V.rows();
     if (!same_V) require_finite_positions(data.V);
     if (!same_count || !same_array(data.F, valid.F)) require_faces(data.F, data.V.rows());
-    if (!same_array(data.source_face, valid.source_face)) require_polygons(data.source_face);
+    if (!same_array(data.source_face, valid.source_face))
+        require_sources("source_face", data.source_face, "polygons");
+    if (!same_array(data.source_vertex, valid.source_vertex))
+        require_sources("source_vertex", data.source_vertex, "vertices");
     if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
     if (!same_array(data.splats.scales, valid.splats.scales) ||
         !same_array(data.splats.rotations, valid.splats.rotations) ||

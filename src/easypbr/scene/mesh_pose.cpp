@@ -5,6 +5,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 namespace {
@@ -49,7 +50,7 @@ Eigen::Affine3d Mesh::T_world_mesh() const {
 }
 
 void Mesh::set_T_world_mesh(const Eigen::Affine3d& T) {
-    if (!T.matrix().allFinite()) throw ArgumentError("mesh T_world_mesh: expected finite numbers");
+    require_pose("T_world_mesh", T);
     const std::optional<Mesh> above = parent();
     const Eigen::Affine3d T_world_parent = above ? above->T_world_mesh() : Eigen::Affine3d::Identity();
     const Eigen::Affine3d T_parent_mesh = above ? T_world_parent.inverse() * T : T;

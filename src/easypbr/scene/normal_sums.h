@@ -17,6 +17,7 @@ Array3f directions(Array3f::Dense vectors);
 struct UnitedMesh {
     Array3f V;
     Array3i F;
+    Array1i rows;  ///< of V for each vertex of the mesh; empty: the same
 
     explicit UnitedMesh(const MeshData& mesh);
 };

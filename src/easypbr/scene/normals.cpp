@@ -225,23 +225,26 @@ Array3f face_normals(const Array3f& V, const Array3i& F) {
 }
 
 detail::UnitedMesh::UnitedMesh(const MeshData& mesh) : V(mesh.V), F(mesh.F) {
-    const Array1i& source = mesh.source_vertex;
-    if (source.empty()) return;
-    require_faces(mesh.F, source.rows());
-    Array3f::Dense places = Array3f::Dense::Zero(source.maxCoeff() + 1, 3);
-    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) places.row(source[i]) = mesh.V.row(i);
+    if (mesh.source_vertex.empty()) return;
+    // Of a file of many more vertices the numbers are too large to be rows.
+    rows = numbers_below(2 * mesh.source_vertex.rows(), mesh.source_vertex);
+    require_faces(mesh.F, rows.rows());
+    Array3f::Dense places = Array3f::Dense::Zero(rows.maxCoeff() + 1, 3);
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) places.row(rows[i]) = mesh.V.row(i);
     Array3i::Dense faces(mesh.F.rows(), 3);
     parallel_for(size_t(faces.size()), normals_grain,
-                 [&](size_t i) { faces.data()[i] = source[mesh.F.data()[i]]; });
+                 [&](size_t i) { faces.data()[i] = rows[mesh.F.data()[i]]; });
     V = std::move(places);
     F = std::move(faces);
 }
 
 Array3f smooth_normals(const MeshData& mesh) {
+    require_shapes(mesh);
+    require_sources("source_vertex", mesh.source_vertex, "vertices");
     const detail::UnitedMesh united(mesh);
     const Array3f normals = vertex_normals(united.V, united.F);
-    const Array1i& source = mesh.source_vertex;
-    return source.empty() ? normals : rows_of(normals, {source.data(), size_t(source.size())});
+    const Array1i& rows = united.rows;
+    return rows.empty() ? normals : rows_of(normals, {rows.data(), size_t(rows.size())});
 }
 
 }  // namespace easypbr

@@ -33,7 +33,7 @@ void spread_polygon_values(MeshData& mesh) {
             return fits_elements(mesh, scalar.values.rows());
         });
     if (all_fit || mesh.source_face.rows() != mesh.F.rows()) return;
-    require_polygons(mesh.source_face);
+    require_sources("source_face", mesh.source_face, "polygons");
     const Eigen::Index polygons = polygon_count(mesh);
     FaceValues values;
     values.L = taken_for_triangles(mesh.L, mesh, polygons);

@@ -29,6 +29,7 @@
 #include "easypbr/io/tables/vertex_rows.h"
 #include "easypbr/scene/crease.h"
 #include "easypbr/scene/merge.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::io {
 namespace {
@@ -170,13 +171,13 @@ std::string encode(const MeshData& mesh, const fs::path& path, const std::string
 /// Whether vertices were split from one, as at seams of texture coordinates.
 bool has_split_vertices(const MeshData& mesh) {
     if (mesh.source_vertex.empty()) return false;
-    std::vector<bool> seen(size_t(mesh.source_vertex.maxCoeff()) + 1);
-    return std::ranges::any_of(std::span(mesh.source_vertex.data(), size_t(mesh.source_vertex.size())),
-                               [&](int32_t source) {
-                                   const bool again = seen[size_t(source)];
-                                   seen[size_t(source)] = true;
-                                   return again;
-                               });
+    const Array1i sources = numbers_below(8 * mesh.source_vertex.rows(), mesh.source_vertex);
+    std::vector<bool> seen(size_t(sources.maxCoeff()) + 1);
+    return std::ranges::any_of(std::span(sources.data(), size_t(sources.size())), [&](int32_t source) {
+        const bool again = seen[size_t(source)];
+        seen[size_t(source)] = true;
+        return again;
+    });
 }
 
 /// The mesh as one node, for a format that has no hierarchy. Files do not say which vertices count as one for
