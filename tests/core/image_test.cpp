@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -31,6 +33,19 @@ TEST(Image, RefusesImpossibleSizes) {
     EXPECT_THROW(Image(max_image_side + 1, 1, 1, PixelType::u8), ArgumentError);
     EXPECT_THROW(Image(1, 1, 5, PixelType::u8), ArgumentError);
     EXPECT_THROW(Image(1, 1, 1, PixelType::u8).pixels<float>(), ArgumentError);
+}
+
+TEST(Image, GivesPixelsOfItsOwnTypeAlone) {
+    Image bytes(2, 1, 3, PixelType::u8), shorts(2, 1, 3, PixelType::u16), floats(2, 1, 3, PixelType::f32);
+    EXPECT_EQ(bytes.pixels<uint8_t>().size(), 6u);
+    EXPECT_EQ(bytes.pixels<std::byte>().size(), 6u);
+    EXPECT_EQ(shorts.pixels<uint16_t>().size(), 6u);
+    EXPECT_EQ(std::as_const(floats).pixels<float>().size(), 6u);
+    EXPECT_THROW(bytes.pixels<float>(), ArgumentError);
+    EXPECT_THROW(bytes.pixels<bool>(), ArgumentError);
+    EXPECT_THROW(shorts.pixels<int16_t>(), ArgumentError);
+    EXPECT_THROW(floats.pixels<double>(), ArgumentError);
+    EXPECT_THROW(floats.pixels<int32_t>(), ArgumentError);
 }
 
 TEST(Image, ChangesItsChannels) {

@@ -158,6 +158,9 @@ TEST(Arrows, WhatDoesNotFitIsRefused) {
               "arrows: scale: expected a number > 0, got 0");
     EXPECT_THROW(make_arrows(two, two, {.radius = -1.0}), ArgumentError);
     EXPECT_THROW(make_arrows(two, two, {.segments = 2}), ArgumentError);
+    const Eigen::MatrixXd narrow = Eigen::MatrixXd::Ones(2, 2);
+    EXPECT_EQ(refusal([&] { make_arrows(narrow, two); }), "array: expected n x 3, got 2 x 2");
+    EXPECT_EQ(refusal([&] { make_arrows(two, narrow.array() * 2); }), "array: expected n x 3, got 2 x 2");
 }
 
 }  // namespace

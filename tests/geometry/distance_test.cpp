@@ -80,6 +80,11 @@ TEST(SurfaceTree, OfACloudIsItsVertices) {
     EXPECT_EQ(nearest.face, (std::vector<int32_t>{1, 2}));
     EXPECT_NEAR(nearest.distance[1], 0.9, 1e-6);
     EXPECT_THROW(SurfaceTree(MeshData{}), ArgumentError);
+    for (const int32_t index : {-1, 3}) {
+        MeshData torn = cloud;
+        torn.F = Array3i::Dense{{0, 1, index}};
+        EXPECT_THROW(SurfaceTree{torn}, ArgumentError) << index;
+    }
     EXPECT_THROW(SurfaceTree(cloud).nearest(Array3f(Rows3{{0, NAN, 0}})), ArgumentError);
 }
 

@@ -312,6 +312,11 @@ TEST(RayTree, RefusesWhatHasNoAnswer) {
     EXPECT_EQ(refusal([&] { RayTree{cloud}; }),
               "rays: expected a mesh with faces, got 'cloud' with 2 vertices and 0 faces");
     EXPECT_THROW(visible_vertices(Mesh(cloud), Vec3d(0, 0, 0)), ArgumentError);
+    for (const int32_t index : {-1, 2}) {
+        MeshData torn = cloud;
+        torn.F = Array3i::Dense{{0, 1, index}};
+        EXPECT_THROW(RayTree{torn}, ArgumentError) << index;
+    }
     const RayTree tree(make_box());
     const Rows3 one = rows_of({{0, 0, 1}}), two = rows_of({{0, 0, 1}, {0, 0, 2}}),
                 three = rows_of({{0, 0, 1}, {0, 0, 2}, {0, 0, 3}}), no_number = rows_of({{0, NAN, 0}});

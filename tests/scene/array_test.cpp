@@ -93,6 +93,8 @@ TEST(Array, MeshesKeepWhatTheyHadWhenAnArrayIsRefused) {
     EXPECT_EQ(refusal([&] { mesh.set_V(counted(3, 400)); }), "array: expected n x 3, got 3 x 400");
     EXPECT_EQ(refusal([&] { mesh.set_UV(counted(3, 24)); }), "array: expected n x 2, got 3 x 24");
     EXPECT_EQ(refusal([&] { mesh.set_positions(counted(24, 2)); }), "array: expected n x 3, got 24 x 2");
+    EXPECT_EQ(refusal([&] { mesh.set_positions(counted(24, 2).array() + 1); }),
+              "array: expected n x 3, got 24 x 2");
     EXPECT_EQ(mesh.V().data(), before.data());
     mesh.set_positions(counted(24, 3));
     EXPECT_EQ(mesh.V()(23, 2), 71);

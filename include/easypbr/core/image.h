@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -58,7 +59,8 @@ class Image {
     std::span<const std::byte> bytes() const { return data_; }
     std::span<std::byte> bytes() { return data_; }
 
-    /// All channels of all pixels, row by row. Throws ArgumentError when T is not the image's pixel type.
+    /// All channels of all pixels, row by row. Throws ArgumentError when T is not the image's pixel type:
+    /// uint8_t or std::byte, uint16_t, or float.
     template <class T>
     std::span<const T> pixels() const {
         require<T>();
@@ -91,10 +93,11 @@ class Image {
 
     template <class T>
     void require() const {
-        constexpr PixelType wanted = sizeof(T) == 1   ? PixelType::u8
-                                     : sizeof(T) == 2 ? PixelType::u16
-                                                      : PixelType::f32;
-        if (wanted != type_) throw ArgumentError("image: pixels read as a type that it does not hold");
+        constexpr bool is_u8 = std::is_same_v<T, uint8_t> || std::is_same_v<T, std::byte>;
+        const bool is_held = type_ == PixelType::u8    ? is_u8
+                             : type_ == PixelType::u16 ? std::is_same_v<T, uint16_t>
+                                                       : std::is_same_v<T, float>;
+        if (!is_held) throw ArgumentError("image: pixels read as a type that it does not hold");
     }
 
     int width_ = 0, height_ = 0, channels_ = 0;

@@ -56,7 +56,7 @@ class KdTree {
 /// mesh's offset.
 class SurfaceTree {
   public:
-    /// Throws ArgumentError when there are no vertices.
+    /// Throws ArgumentError when there are no vertices, and for faces out of range.
     explicit SurfaceTree(const MeshData& mesh);
 
     struct Nearest {

@@ -53,11 +53,9 @@ struct ArrowOptions {
 /// Arrows of a vector field as one mesh, each from its start along its vector, with the head of make_arrow()
 /// and without uv: 7 * segments vertices an arrow, in the order of the rows. Vectors of length 0 have no
 /// arrow. The lengths of the vectors are scalars "length", which colour the arrows when asked for. Starts far
-/// from zero give the mesh an offset. Throws ArgumentError for rows that do not fit together, and when no row
-/// is finite.
-Mesh make_arrows(const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& starts,
-                 const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& vectors,
-                 const ArrowOptions& options = {});
+/// from zero give the mesh an offset. Throws ArgumentError unless both are n x 3, for rows that do not fit
+/// together, and when no row is finite.
+Mesh make_arrows(const Array3d& starts, const Array3d& vectors, const ArrowOptions& options = {});
 
 /// Arrows along x, y and z from the origin, coloured red, green and blue by vertex.
 Mesh make_axes(float length = 1, std::optional<float> radius = std::nullopt);

@@ -25,7 +25,7 @@ class RayTree {
     /// The mesh and its descendants in the frame of its parent, as merged() has them; faces count in its
     /// order. Throws ArgumentError when there are no faces.
     explicit RayTree(const Mesh& mesh);
-    /// The mesh's own faces, without pose and descendants.
+    /// The mesh's own faces, without pose and descendants. Throws for faces out of range, too.
     explicit RayTree(const MeshData& mesh);
 
     Eigen::Index face_count() const;

@@ -84,7 +84,7 @@ class Mesh {
     /// The same of a matrix with a dynamic number of columns. Throws ArgumentError unless there are 3.
     template <class Derived>
     requires(Derived::ColsAtCompileTime ==
-             Eigen::Dynamic) void set_positions(const Eigen::MatrixBase<Derived>& positions) {
+             Eigen::Dynamic) void set_positions(const Eigen::DenseBase<Derived>& positions) {
         set_positions(Array3d(positions.derived()));
     }
     Vec3d offset() const;

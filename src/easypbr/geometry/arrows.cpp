@@ -20,10 +20,7 @@ constexpr size_t arrow_grain = 512;
 /// From the tip to the bottom: two of the head's side, two of its lower side, two of the shaft, one below.
 constexpr int rings_of_arrow = 7;
 
-using FieldRows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using FieldRef = Eigen::Ref<const FieldRows>;
-
-void require_field(const FieldRef& starts, const FieldRef& vectors, const ArrowOptions& options) {
+void require_field(const Array3d& starts, const Array3d& vectors, const ArrowOptions& options) {
     const auto require_rows = [&](const char* what, Eigen::Index rows) {
         if (rows != starts.rows())
             throw ArgumentError(fmt::format("arrows: {}: expected one for each of {} starts, got {}", what,
@@ -43,7 +40,7 @@ void require_field(const FieldRef& starts, const FieldRef& vectors, const ArrowO
 }
 
 /// The rows that have an arrow: finite, and of a length above 0.
-std::vector<int32_t> drawn_rows(const FieldRef& starts, const FieldRef& vectors, bool strict) {
+std::vector<int32_t> drawn_rows(const Array3d& starts, const Array3d& vectors, bool strict) {
     std::vector<int32_t> rows;
     Eigen::Index lost = 0, first_lost = 0;
     for (Eigen::Index i = 0; i < starts.rows(); ++i) {
@@ -193,7 +190,7 @@ A for_vertices(const A& array, size_t of_arrow) {
 
 }  // namespace
 
-Mesh make_arrows(const FieldRef& starts, const FieldRef& vectors, const ArrowOptions& options) {
+Mesh make_arrows(const Array3d& starts, const Array3d& vectors, const ArrowOptions& options) {
     require_field(starts, vectors, options);
     const std::vector<int32_t> rows = drawn_rows(starts, vectors, options.strict);
     MeshData mesh;
@@ -204,7 +201,7 @@ Mesh make_arrows(const FieldRef& starts, const FieldRef& vectors, const ArrowOpt
         throw ArgumentError(fmt::format("arrows: expected at most {} of {} segments, got {}",
                                         size_t(std::numeric_limits<int32_t>::max()) / of_arrow,
                                         options.segments, rows.size()));
-    FieldRows drawn(Eigen::Index(rows.size()), 3);
+    Array3d::Dense drawn(Eigen::Index(rows.size()), 3);
     Eigen::VectorXd lengths(drawn.rows());
     for (Eigen::Index i = 0; i < drawn.rows(); ++i) {
         drawn.row(i) = starts.row(rows[size_t(i)]);

@@ -12,6 +12,7 @@
 #include "easypbr/scene/eye.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/near_plane.h"
 #include "easypbr/scene/pixel.h"
 
@@ -232,6 +233,7 @@ RayTree::RayTree(const Mesh& mesh) : RayTree(flatten_shape(mesh)) {}
 
 RayTree::RayTree(const MeshData& mesh) {
     geometry::require_faces("rays", mesh);
+    require_faces(mesh.F, mesh.V.rows());
     tree_ = std::make_shared<const Tree>(mesh);
 }
 

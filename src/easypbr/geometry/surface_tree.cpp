@@ -6,6 +6,7 @@
 #include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/triangle_tree.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 struct SurfaceTree::Tree : geometry::TriangleTree {
@@ -39,6 +40,7 @@ Vec3d nearest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const 
 
 SurfaceTree::SurfaceTree(const MeshData& mesh) {
     geometry::require_vertices("surface distance", mesh);
+    require_faces(mesh.F, mesh.V.rows());
     tree_ = std::make_shared<const Tree>(mesh);
 }
 

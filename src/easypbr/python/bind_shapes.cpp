@@ -78,7 +78,7 @@ FieldRows to_field(nb::handle object, const char* what) {
 Mesh arrows(const ArrayLike& starts, const ArrayLike& vectors, std::optional<double> scale,
             std::optional<double> radius, int segments, const nb::object& values, const nb::object& colors,
             bool strict) {
-    const FieldRows from = to_field(starts, "arrows: starts"), along = to_field(vectors, "arrows: vectors");
+    const Array3d from = to_field(starts, "arrows: starts"), along = to_field(vectors, "arrows: vectors");
     ArrowOptions options{.scale = scale, .radius = radius, .segments = segments, .strict = strict};
     RoundingCounts rounding;
     if (!values.is_none()) {
