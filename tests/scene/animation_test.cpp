@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "easypbr/core/error.h"
 
@@ -59,6 +62,36 @@ TEST(AnimationChannel, RotationsGoTheShorterWay) {
     EXPECT_NEAR(q.norm(), 1, 1e-15);
 }
 
+template <class Job>
+std::string refusal(Job&& job) {
+    try {
+        job();
+    } catch (const ArgumentError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+TEST(AnimationChannel, WithoutKeysThatFitIsNotSampled) {
+    const auto message = [](const AnimationChannel& c) { return refusal([&] { sample(c, 0.5); }); };
+    EXPECT_EQ(message({}), "animation channel: expected times, got none");
+    EXPECT_EQ(
+        message(channel(Interpolation::linear, {0, 1}, ArrayXf::Dense::Zero(1, 3))),
+        "animation channel: expected values of 2 rows, 1 for each of 2 times, and 3 columns, got 1 x 3");
+    EXPECT_EQ(
+        message(channel(Interpolation::cubic_spline, {0, 1}, ArrayXf::Dense::Zero(2, 3))),
+        "animation channel: expected values of 6 rows, 3 for each of 2 times, and 3 columns, got 2 x 3");
+    EXPECT_NE(message(channel(Interpolation::linear, {0, 1}, ArrayXf::Dense::Zero(2, 3),
+                              AnimatedProperty::rotation)),
+              "taken");
+    EXPECT_NE(
+        message(channel(Interpolation::linear, {0, 1}, ArrayXf::Dense(2, 0), AnimatedProperty::weights)),
+        "taken");
+    const AnimationChannel good = channel(Interpolation::linear, {0, 1}, ArrayXf::Dense::Zero(2, 3));
+    EXPECT_EQ(message(good), "taken");
+    EXPECT_THROW(sample(good, std::numeric_limits<double>::quiet_NaN()), ArgumentError);
+}
+
 Mesh triangle() {
     return Mesh(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Array3i::Dense{{0, 1, 2}});
 }
@@ -82,6 +115,38 @@ AnimationRig skinned(const Mesh& mesh) {
     c.node = 2;
     rig.animations[0].channels = {c};
     return rig;
+}
+
+TEST(Animations, RefuseARigThatDoesNotFitTogether) {
+    const auto message = [](auto&& change) {
+        AnimationRig rig = skinned(triangle());
+        change(rig);
+        return refusal([&] { Animations{std::move(rig)}; });
+    };
+    const auto of_channel = [&](auto&& change) {
+        return message([&](AnimationRig& rig) { change(rig.animations[0].channels[0]); });
+    };
+    EXPECT_EQ(message([](AnimationRig&) {}), "taken");
+    EXPECT_EQ(
+        of_channel([](AnimationChannel& c) { c.values = ArrayXf(); }),
+        "animation channel: expected values of 2 rows, 1 for each of 2 times, and 3 columns, got 0 x 0");
+    EXPECT_EQ(of_channel([](AnimationChannel& c) {
+                  c.times = {1, 1};
+              }),
+              "animation channel: expected finite times that rise, got 1 as time 1 of 2, after 1");
+    EXPECT_NE(of_channel([](AnimationChannel& c) { c.times[1] = NAN; }), "taken");
+    EXPECT_EQ(of_channel([](AnimationChannel& c) { c.values = ArrayXf::Dense::Constant(2, 3, NAN); }),
+              "animation channel: expected finite values, got others in row 0 of 2");
+    EXPECT_EQ(message([](AnimationRig& rig) { rig.animations[0].duration_s = -1; }),
+              "animation rig: animation 'bend': expected a finite duration of at least 0, got -1");
+    EXPECT_NE(message([](AnimationRig& rig) { rig.animations[0].duration_s = NAN; }), "taken");
+    EXPECT_EQ(message([](AnimationRig& rig) { rig.skins[0].T_joint_at_rest.pop_back(); }),
+              "animation rig: expected a pose at rest for each of 2 joints of a skin, got 1");
+    EXPECT_EQ(message([](AnimationRig& rig) { rig.materials.resize(1); }),
+              "animation rig: material 0: expected a function of its values, got none");
+    EXPECT_EQ(message([](AnimationRig& rig) { rig.lights.resize(1); }),
+              "animation rig: light 0: expected a function of its values, got none");
+    EXPECT_NE(message([](AnimationRig& rig) { rig.cameras.resize(1); }), "taken");
 }
 
 /// Where the mesh's vertices are in the world, one in each row.

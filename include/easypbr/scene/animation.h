@@ -42,20 +42,21 @@ struct AnimationChannel {
     int node = 0;
     AnimatedProperty property = AnimatedProperty::translation;
     Interpolation interpolation = Interpolation::linear;
-    std::vector<float> times;  ///< seconds, rising
-    /// One row for each time, three for cubic splines; rotations are x, y, z, w.
+    std::vector<float> times;  ///< seconds, finite and rising; at least one
+    /// One row for each time, three for cubic splines, finite; rotations are x, y, z, w.
     ArrayXf values;
     int parameter = 0;  ///< of a material, light or camera: the first one
 };
 
 struct Animation {
     std::string name;
-    double duration_s = 0;  ///< the last key's time
+    double duration_s = 0;  ///< the last key's time; 0 or more
     std::vector<AnimationChannel> channels;
 };
 
 /// The value of a channel at a time; before the first key that of the first, after the last that of the last.
-/// Rotations have unit length.
+/// Rotations have unit length. Throws ArgumentError when there are no times, when values have not as many
+/// rows and columns as times, interpolation and property need, and for NaN.
 Array1d sample(const AnimationChannel& channel, double time_s);
 
 /// How a mesh's vertices follow joints and morph targets.
@@ -122,7 +123,9 @@ using MovedMeshes = std::vector<std::pair<Mesh, Eigen::Affine3d>>;
 class Animations {
   public:
     Animations() = default;
-    /// Throws ArgumentError for indices out of range.
+    /// Throws ArgumentError for indices out of range, for arrays and poses of a skin that do not fit
+    /// together, for channels and durations that are not as they are described, and for functions that are
+    /// not set.
     explicit Animations(AnimationRig rig);
 
     bool empty() const { return rig_.animations.empty(); }

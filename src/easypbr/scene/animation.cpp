@@ -11,6 +11,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/animation_keys.h"
 #include "easypbr/scene/deformation.h"
 
 namespace easypbr {
@@ -39,12 +40,12 @@ template <class Item>
 void check_parameters(const AnimationChannel& channel, const char* what, const std::vector<Item>& items) {
     check_index(what, channel.node, items.size(), false);
     const size_t count = items[size_t(channel.node)].parameters.size();
-    const int last = channel.parameter + int(channel.values.cols()) - 1;
     check_index("parameter", channel.parameter, count, false);
-    check_index("parameter", last, count, false);
+    check_index("parameter", channel.parameter + int(channel.values.cols()) - 1, count, false);
 }
 
 void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
+    require_keys(channel);
     switch (channel.property) {
         case AnimatedProperty::material:
             return check_parameters(channel, "material", rig.materials);
@@ -55,6 +56,40 @@ void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
         default:
             return check_index("node", channel.node, rig.nodes.size(), false);
     }
+}
+
+void check_animation(const Animation& animation, const AnimationRig& rig) {
+    if (!(animation.duration_s >= 0) || !std::isfinite(animation.duration_s))
+        throw ArgumentError(
+            fmt::format("animation rig: animation '{}': expected a finite duration of at least 0, got {}",
+                        animation.name, animation.duration_s));
+    for (const AnimationChannel& channel : animation.channels) check_channel(channel, rig);
+}
+
+void check_skin(const Skin& skin, size_t nodes) {
+    for (const int joint : skin.joints) check_index("joint", joint, nodes, false);
+    if (skin.T_joint_at_rest.size() != skin.joints.size())
+        throw ArgumentError(
+            fmt::format("animation rig: expected a pose at rest for each of {} joints of a skin, got {}",
+                        skin.joints.size(), skin.T_joint_at_rest.size()));
+}
+
+/// Lights or cameras.
+template <class Item>
+void check_items(const char* what, const std::vector<Item>& items, size_t nodes) {
+    for (size_t i = 0; i < items.size(); ++i) {
+        if (!items[i].value)
+            throw ArgumentError(
+                fmt::format("animation rig: {} {}: expected a function of its values, got none", what, i));
+        for (const auto& [name, node] : items[i].users) check_index("node", node, nodes, false);
+    }
+}
+
+void check_materials(const std::vector<AnimatedMaterial>& materials) {
+    for (size_t i = 0; i < materials.size(); ++i)
+        if (!materials[i].material)
+            throw ArgumentError(
+                fmt::format("animation rig: material {}: expected a function of its values, got none", i));
 }
 
 /// Of a moment, at which channels of steps may have another time than the others.
@@ -156,14 +191,11 @@ Animations::Animations(AnimationRig rig)
     for (const AnimationNode& node : rig_.nodes)
         check_deformation(node.deformation, node.skin < 0 ? 0 : rig_.skins[size_t(node.skin)].joints.size(),
                           node.skin >= 0);
-    for (const Skin& skin : rig_.skins)
-        for (const int joint : skin.joints) check_index("joint", joint, count, false);
-    for (const Animation& animation : rig_.animations)
-        for (const AnimationChannel& channel : animation.channels) check_channel(channel, rig_);
-    for (const auto& light : rig_.lights)
-        for (const auto& [name, node] : light.users) check_index("node", node, count, false);
-    for (const auto& camera : rig_.cameras)
-        for (const auto& [name, node] : camera.users) check_index("node", node, count, false);
+    for (const Skin& skin : rig_.skins) check_skin(skin, count);
+    check_materials(rig_.materials);
+    check_items("light", rig_.lights, count);
+    check_items("camera", rig_.cameras, count);
+    for (const Animation& animation : rig_.animations) check_animation(animation, rig_);
     moved_.assign(count, false);
     for (const Animation& animation : rig_.animations)
         for (const AnimationChannel& channel : animation.channels)
