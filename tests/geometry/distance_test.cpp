@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/sample.h"
@@ -86,6 +87,13 @@ TEST(SurfaceTree, OfACloudIsItsVertices) {
         EXPECT_THROW(SurfaceTree{torn}, ArgumentError) << index;
     }
     EXPECT_THROW(SurfaceTree(cloud).nearest(Array3f(Rows3{{0, NAN, 0}})), ArgumentError);
+}
+
+TEST(SurfaceTree, IsThereAfterItWasMovedFrom) {
+    SurfaceTree tree(*make_box().snapshot());
+    const SurfaceTree taken = std::move(tree);
+    const Array3f corner = Rows3{{0.5f, 0.5f, 0.5f}};
+    EXPECT_EQ(tree.nearest(corner).distance, taken.nearest(corner).distance);
 }
 
 TEST(SurfaceDistance, OfParallelPlanesIsTheirGap) {

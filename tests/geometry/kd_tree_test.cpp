@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "geometry/measure.h"
 
@@ -57,6 +58,13 @@ TEST(KdTree, CoincidentPointsAreAllThere) {
     EXPECT_EQ(nearest.distances.maxCoeff(), 0);
     EXPECT_EQ(nearest.indices(0, 0), 0);
     EXPECT_EQ(nearest.indices(0, 999), 999);
+}
+
+TEST(KdTree, IsThereAfterItWasMovedFrom) {
+    KdTree tree(Array3f::Dense{{0, 0, 0}, {1, 0, 0}});
+    const KdTree taken = std::move(tree);
+    EXPECT_EQ(taken.size(), 2);
+    EXPECT_EQ(tree.size(), 2);
 }
 
 TEST(KdTree, RefusesWhatHasNoAnswer) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/primitives.h"
@@ -303,6 +304,12 @@ TEST(RayTree, OneRowStandsForAllAndNoneForNothing) {
         EXPECT_TRUE(tree.cast(Array3d(), rows).faces.empty());
     EXPECT_TRUE(tree.occluded(Array3d(), Array3d()).empty());
     EXPECT_TRUE(tree.contains(Array3d()).empty());
+}
+
+TEST(RayTree, IsThereAfterItWasMovedFrom) {
+    RayTree tree(make_box());
+    const RayTree taken = std::move(tree);
+    EXPECT_EQ(tree.face_count(), taken.face_count());
 }
 
 TEST(RayTree, RefusesWhatHasNoAnswer) {

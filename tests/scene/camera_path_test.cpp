@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "easypbr/core/error.h"
 
@@ -275,6 +276,14 @@ std::string error_of(const Keys& keys, const CameraPathOptions& options = {}) {
         return error.what();
     }
     return "no error";
+}
+
+TEST(CameraPath, IsThereAfterItWasMovedFrom) {
+    CameraPath orbit = CameraPath::orbit(Camera::look_at({0, 0, 3}, {0, 0, 0}), {0, 0, 0});
+    CameraPath path({CameraKey{}, CameraKey{}});
+    const CameraPath taken_orbit = std::move(orbit), taken_path = std::move(path);
+    EXPECT_EQ(orbit.pose(0.5).matrix(), taken_orbit.pose(0.5).matrix());
+    EXPECT_EQ(path.pose(0.5).matrix(), taken_path.pose(0.5).matrix());
 }
 
 TEST(CameraPath, RefusesWhatIsNoPath) {

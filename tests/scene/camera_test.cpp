@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "easypbr/core/error.h"
@@ -119,6 +121,26 @@ TEST(Camera, LooksAlongUpWithoutLosingItsAxes) {
         EXPECT_TRUE(Vec3d(R.col(1)).isApprox(c.top, 1e-14)) << R;
         EXPECT_TRUE(Vec3d(R.col(2)).isApprox(c.position / 3, 1e-14)) << R;
     }
+}
+
+TEST(Camera, HasAPoseWhateverTheLengthOfUpIs) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const Vec3d position(1, 2, 3), target(0, 0, 0);
+    const auto pose = [&](const Vec3d& up) {
+        return Camera::look_at(position, target, up).T_world_cam.matrix();
+    };
+    const Mat4d upright = pose({0, 1, 0});
+    // Their squares underflow, and overflow.
+    EXPECT_EQ(pose({0, 1e-200, 0}), upright);
+    EXPECT_EQ(pose({0, 1e200, 0}), upright);
+    EXPECT_EQ(pose({0, 0, 0}), upright) << "none is +y";
+    for (const Vec3d& down : {Vec3d(0, -1, 0), Vec3d(0, 0, -1)}) {
+        const Mat3d R = Camera::look_at({0, 0, 0}, down, {0, 0, 0}).T_world_cam.linear();
+        // Sums of products of numbers of at most 1.
+        EXPECT_LT((R * R.transpose() - Mat3d::Identity()).cwiseAbs().maxCoeff(), 1e-15);
+    }
+    EXPECT_THROW(pose({0, std::nan(""), 0}), ArgumentError);
+    EXPECT_THROW(pose({0, infinity, 0}), ArgumentError);
 }
 
 TEST(Camera, RefusesWhatIsNoCamera) {

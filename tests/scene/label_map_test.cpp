@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "easypbr/core/error.h"
 
@@ -51,6 +52,14 @@ TEST(LabelMap, ShowsWhatIsUnknownAsUnlabelled) {
     EXPECT_EQ(map.color_of(17), (Rgb8{9, 8, 7}));
     EXPECT_EQ(map.color_of(-3), (Rgb8{9, 8, 7}));
     EXPECT_EQ(LabelMap("cars", classes).color_of(17), (Rgb8{128, 128, 128}));
+}
+
+TEST(LabelMap, IsThereAfterItWasMovedFrom) {
+    LabelMap map = LabelMap::generated({"a", "b"});
+    const LabelMap taken = std::move(map);
+    EXPECT_EQ(map.classes().size(), 2u);
+    EXPECT_TRUE(map.accepts(1));
+    EXPECT_EQ(map.range_text(), taken.range_text());
 }
 
 TEST(LabelMap, SaysWhatIsWrong) {

@@ -54,6 +54,22 @@ TEST(Mesh, StaysTheSameObjectWhenAHandleIsMovedFrom) {
     EXPECT_EQ(moved.snapshot().objects.size(), 1u);
 }
 
+TEST(Mesh, AnEditWithinItsOwnEditIsRefused) {
+    Mesh mesh(triangle()), other;
+    EXPECT_THROW(mesh.edit([&](MeshData&) { mesh.set_offset({1, 0, 0}); }), ArgumentError);
+    EXPECT_THROW(mesh.edit([&](MeshData&) { other.edit([&](MeshData&) {
+                                                mesh.set_offset({1, 0, 0});
+                                            }); }),
+                 ArgumentError);
+    EXPECT_EQ(mesh.offset(), Vec3d(0, 0, 0));
+    mesh.edit([&](MeshData& data) {
+        data.offset = Vec3d(double(mesh.V().rows()), 0, 0);
+        other.set_offset({2, 0, 0});
+    });
+    EXPECT_EQ(mesh.offset(), Vec3d(3, 0, 0)) << "reading it, and editing others, is fine";
+    EXPECT_EQ(other.offset(), Vec3d(2, 0, 0));
+}
+
 TEST(Mesh, AcceptsWhatFitsTogether) {
     MeshData data = triangle();
     data.N = Positions{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};

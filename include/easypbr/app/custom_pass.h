@@ -29,6 +29,10 @@ class FragmentShader {
     /// A text; `name` is what messages call it.
     FragmentShader(const std::string& name, const std::string& text);
 
+    // Moving copies: a handle always has its object.
+    FragmentShader(const FragmentShader& other) = default;
+    FragmentShader& operator=(const FragmentShader& other) = default;
+
     /// The value of a uniform from now on. One that the shader does not have is ignored.
     void set(const std::string& uniform, int value);
     void set(const std::string& uniform, float value);

@@ -36,6 +36,10 @@ class KdTree {
     /// Throws ArgumentError when there is no point or one that is not finite.
     explicit KdTree(const Array3f& points);
 
+    // Moving copies: a handle always has its object.
+    KdTree(const KdTree& other) = default;
+    KdTree& operator=(const KdTree& other) = default;
+
     Eigen::Index size() const;
 
     /// Throws ArgumentError unless 1 <= k <= size() and the queries are finite.
@@ -58,6 +62,10 @@ class SurfaceTree {
   public:
     /// Throws ArgumentError when there are no vertices, and for faces out of range.
     explicit SurfaceTree(const MeshData& mesh);
+
+    // Moving copies: a handle always has its object.
+    SurfaceTree(const SurfaceTree& other) = default;
+    SurfaceTree& operator=(const SurfaceTree& other) = default;
 
     struct Nearest {
         std::vector<double> distance;

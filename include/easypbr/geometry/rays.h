@@ -28,6 +28,10 @@ class RayTree {
     /// The mesh's own faces, without pose and descendants. Throws for faces out of range, too.
     explicit RayTree(const MeshData& mesh);
 
+    // Moving copies: a handle always has its object.
+    RayTree(const RayTree& other) = default;
+    RayTree& operator=(const RayTree& other) = default;
+
     Eigen::Index face_count() const;
 
     /// What each ray meets first. Of several faces at the same distance the first: so of faces with the same

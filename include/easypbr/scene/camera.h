@@ -64,8 +64,9 @@ struct Camera {
     /// Reversed-Z projection for clip depth 0 (far) to 1 (near): z_ndc = near / z for perspective.
     Mat4d projection_matrix(double aspect) const;
 
-    /// Looks from `position` to `target`. When the direction is parallel to `up`, another up is chosen.
-    /// Throws ArgumentError when position and target coincide.
+    /// Looks from `position` to `target`. When the direction is parallel to `up`, another up is chosen; a
+    /// zero one is +y. Throws ArgumentError when position and target coincide, and for an up that is not
+    /// finite.
     static Camera look_at(const Vec3d& position, const Vec3d& target, const Vec3d& up = {0, 1, 0});
 
     /// From OpenCV's intrinsic matrix K (pixel centres at integers, skew allowed) for a picture of width x

@@ -50,6 +50,10 @@ class CameraPath {
     /// others with an angle of view, and rotations that times very unlike each other make tumble.
     explicit CameraPath(std::vector<CameraKey> keys, const CameraPathOptions& options = {});
 
+    // Moving copies: there are always keys, or a circle.
+    CameraPath(const CameraPath& other) = default;
+    CameraPath& operator=(const CameraPath& other) = default;
+
     /// A circle around the line through `center` along `axis`, at constant speed but for `ease`, from the
     /// camera's pose on; the camera turns with it. Closed when the angle is a multiple of 360 degrees. Throws
     /// ArgumentError for an axis without length, an angle of 0, or a duration that is not above 0.

@@ -36,6 +36,10 @@ class LabelMap {
              std::optional<int32_t> unlabelled = std::nullopt,
              UnknownLabels unknown = UnknownLabels::refused);
 
+    // Moving copies: there is always a class.
+    LabelMap(const LabelMap& other) = default;
+    LabelMap& operator=(const LabelMap& other) = default;
+
     /// Labels 0, 1, 2, ... with these names, in generated colours.
     static LabelMap generated(const std::vector<std::string>& names, std::string name = "generated");
 

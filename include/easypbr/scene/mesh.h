@@ -55,7 +55,8 @@ class Mesh {
 
     /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not
     /// valid) not at all. Readers that hold a snapshot keep theirs. No lock is held meanwhile: `change` may
-    /// use this mesh, and is called again with newer data when another thread's edit came first.
+    /// read this mesh, and is called again with newer data when another thread's edit came first. Throws
+    /// ArgumentError when `change` edits this mesh itself: it changes the data that it is given.
     void edit(const std::function<void(MeshData&)>& change);
 
     Array3f V() const;

@@ -32,10 +32,19 @@ Eigen::Isometry3d require_rigid(const Mat4d& T) {
     return result;
 }
 
+/// Of length 1, whatever its own is; +y for zero.
+Vec3d unit_up(const Vec3d& up) {
+    if (!up.allFinite())
+        throw ArgumentError(fmt::format("camera: expected an up of finite numbers, got ({}, {}, {})", up.x(),
+                                        up.y(), up.z()));
+    if (std::isnormal(up.squaredNorm())) return up.normalized();
+    return up.isZero(0) ? Vec3d(Vec3d::UnitY()) : Vec3d((up / up.cwiseAbs().maxCoeff()).normalized());
+}
+
 /// The picture's top when looking straight down or up: for +y up it is -z when looking down, for +z up it is
-/// +y.
+/// +y. `up` is unit.
 Vec3d substitute_up(const Vec3d& up, const Vec3d& forward) {
-    const Vec3d top = std::abs(up.normalized().z()) > 0.9 ? Vec3d::UnitY() : Vec3d(-Vec3d::UnitZ());
+    const Vec3d top = std::abs(up.z()) > 0.9 ? Vec3d::UnitY() : Vec3d(-Vec3d::UnitZ());
     return forward.dot(up) < 0 ? top : Vec3d(-top);
 }
 
@@ -119,8 +128,9 @@ Camera Camera::look_at(const Vec3d& position, const Vec3d& target, const Vec3d& 
         throw ArgumentError(fmt::format("camera: position and target coincide at ({}, {}, {})", position.x(),
                                         position.y(), position.z()));
     }
-    Vec3d right = forward.cross(up.normalized());
-    if (right.norm() < 1e-6) right = forward.cross(substitute_up(up, forward));
+    const Vec3d top = unit_up(up);
+    Vec3d right = forward.cross(top);
+    if (right.norm() < 1e-6) right = forward.cross(substitute_up(top, forward));
     right.normalize();
     Camera camera;
     camera.T_world_cam.linear() << right, right.cross(forward), -forward;

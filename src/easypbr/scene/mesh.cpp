@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/mesh_arrays.h"
@@ -13,6 +14,9 @@
 
 namespace easypbr {
 namespace {
+
+/// Meshes within whose functions of edit() this thread is, the innermost last.
+thread_local std::vector<uint64_t> edited_meshes;
 
 using NodeVisitor = std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>;
 
@@ -70,11 +74,26 @@ std::shared_ptr<const MeshData> Mesh::snapshot() const {
     return shared_->data;
 }
 
+EditScope::EditScope(uint64_t mesh, const std::string& name) {
+    if (std::ranges::find(edited_meshes, mesh) != edited_meshes.end())
+        throw ArgumentError(fmt::format(
+            "mesh '{}': edited within a function that edits it: change the data that the function is given",
+            name));
+    edited_meshes.push_back(mesh);
+}
+
+EditScope::~EditScope() {
+    edited_meshes.pop_back();
+}
+
 void Mesh::edit(const std::function<void(MeshData&)>& change) {
     for (;;) {
         const std::shared_ptr<const MeshData> before = snapshot();
         MeshData next = *before;
-        change(next);
+        {
+            const EditScope scope(shared_->identity, next.name);
+            change(next);
+        }
         drop_stale_tangents(next, *before);
         spread_polygon_values(next);
         validate(next, *before);
