@@ -212,7 +212,7 @@ void require_parts(const MeshData& data) {
     require_cover(data);
 }
 
-void require_finite(const char* name, const Vec3d& v) {
+void require_finite_vector(const char* name, const Vec3d& v) {
     if (!v.allFinite())
         throw ArgumentError(
             fmt::format("mesh {}: expected finite numbers, got ({}, {}, {})", name, v.x(), v.y(), v.z()));
@@ -248,9 +248,9 @@ void validate(const MeshData& data) {
 
 void validate(const MeshData& data, const MeshData& valid) {
     require_shapes(data);
-    require_finite("offset", data.offset);
-    require_finite("up", data.up);
-    require_finite("front", data.front);
+    require_finite_vector("offset", data.offset);
+    require_finite_vector("up", data.up);
+    require_finite_vector("front", data.front);
     if (!(data.voxel_size >= 0) || !std::isfinite(data.voxel_size))
         throw ArgumentError(
             fmt::format("mesh voxel_size: expected a finite number of at least 0, got {}", data.voxel_size));
