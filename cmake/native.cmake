@@ -41,7 +41,7 @@ add_custom_command(
   OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h ${native_folder}/shader_streams.h
   COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
           ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=19
-          --define NATIVE --define BEHIND --define DEPTH_ONLY ${native_apart} ${native_shaders} ${native_surface_shaders}
+          --define NATIVE --define BEHIND ${native_apart} ${native_shaders} ${native_surface_shaders}
           ${native_line_shaders} ${native_stream_options}
   DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py
   COMMENT "Translating shaders" VERBATIM)

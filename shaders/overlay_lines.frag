@@ -1,7 +1,9 @@
 // Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer. After a layer, before a layer: those only
-// that lie before one layer of surfaces that light passes, and behind the next.
+// that lie before one layer of surfaces that light passes, and behind the next. The segments of a stroke are not blended:
+// of each pixel one is kept, that of the highest rank, which the depth test finds.
 #include "common_lanes.glsl"
 #include "common_camera.glsl"
+#include "overlay_order.glsl"
 
 #feature DEPTH_ONLY is_depth_only
 #feature AFTER is_after_layer
@@ -11,7 +13,6 @@ uniform sampler2D u_depth_target;
 uniform sampler2D u_last_depth;  // of the layer behind; 0: all lines have been drawn
 uniform sampler2D u_next_depth;  // of the layer before; 0: there is nothing more before this pixel's lines
 uniform sampler2D u_nearest_line;  // depth that the first pass found
-uniform float u_half_width;   // pixels
 uniform float u_dash;         // pixels, 0: solid
 uniform float u_always;       // 1: whatever is in front
 uniform float u_nearer_end;   // 1: each half has the colour of its end
@@ -26,8 +27,10 @@ flat in vec4 v_start_color, v_end_color;  // of the whole segment
 flat in vec2 v_parts;  // of the whole segment, at the ends of what is drawn
 flat in vec2 v_w;      // there
 flat in vec3 v_table;  // places of the whole segment's values, and the row
+flat in vec2 v_dash;   // where dashes are at the start of what is drawn, pixels; 1, or -1 where they run against the segment
 
-layout(location = 0) out vec4 o_color;
+layout(location = 0) out vec4 o_color;  // premultiplied
+layout(location = 1) out float o_depth;
 
 // How much the reversed depth of a surface changes per pixel towards one side. Over a plane each step is the same. Past the
 // surface's edge one of two is large, which says nothing of its slope.
@@ -76,13 +79,20 @@ bool is_before(vec2 pixel, float depth) {
     return next <= 0.0 || is_behind(u_next_depth, next, pixel, depth);
 }
 
-// A line is as deep as half its width: what lies no further behind the nearest one is not hidden, so that the
-// segments of a curve do not cut notches into each other.
+// Whether a nearer line hides it. Where a line runs into the depth, its segments reach over each other by half the width:
+// those before it by so much are none that hide it.
 bool is_behind_line(vec2 pixel, float depth) {
-    float nearest = textureLod(u_nearest_line, pixel / u_size, 0.0).r;
-    float z = axial_distance(nearest), thickness = (u_half_width + 1.0) * 2.0 * u_unproject.y / u_size.y;
-    if (!is_orthographic) thickness *= z;
-    return nearest > 0.0 && axial_distance(depth) > z + thickness;
+    float change = abs(v_depths.y - v_depths.x) / max(v_length, 1e-3);
+    return lies_behind(depth + change * (u_half_width + 1.0), textureLod(u_nearest_line, pixel / u_size, 0.0).r);
+}
+
+// The segment with the highest rank is seen. One that covers the whole pixel is before one that does not, so that what a
+// stroke covers is the most that any of its segments does; of those that do, one that no nearer line hides; then the one
+// whose middle is nearest: beyond their ends segments have the colour of the end.
+float rank_of(vec2 pixel, float depth, float coverage, float distance) {
+    bool is_whole = coverage >= 1.0, is_second = is_behind_line(pixel, depth);
+    float part = 0.999 * coverage + 0.001 * (1.0 - distance / (u_half_width + 0.5));
+    return (part + (is_whole ? (is_second ? 1.0 : 2.0) : 0.0)) / 3.0;
 }
 
 // What part of the way from the segment's start, in space, lies at a part of its picture.
@@ -110,23 +120,22 @@ void main() {
     // The part of a pixel across the line that it covers.
     float coverage = clamp(min(distance + u_half_width, 0.5) - max(distance - u_half_width, -0.5), 0.0, 1.0);
     if (u_dash > 0.0) {
-        float phase = mod(v_place.x, 2.0 * u_dash);
+        float phase = mod(v_dash.x + v_dash.y * v_place.x, 2.0 * u_dash);
         coverage *= clamp(min(phase, u_dash - phase) + 0.5, 0.0, 1.0) + clamp(phase - 2.0 * u_dash + 0.5, 0.0, 1.0);
     }
-#ifdef DEPTH_ONLY  // A shader that assigns gl_FragDepth anywhere has no early depth test.
-    gl_FragDepth = depth;
-#endif
     bool covered = is_depth_only ? coverage >= 0.5 : coverage > 0.0;
+    gl_FragDepth = depth;
     if (!covered) discard;
     if (is_hidden(gl_FragCoord.xy, depth)) discard;
     if (is_depth_only) {
         o_color = vec4(depth);
         return;
     }
-    if (is_behind_line(gl_FragCoord.xy, depth)) discard;
     bool between = is_after(gl_FragCoord.xy, depth) && is_before(gl_FragCoord.xy, depth);
     if (!between) discard;
     vec4 color = color_at(place);
     float alpha = coverage * color.a * u_opacity;
+    gl_FragDepth = rank_of(gl_FragCoord.xy, depth, coverage, distance);
     o_color = vec4(color.rgb * alpha, alpha);
+    o_depth = depth;
 }

@@ -6,10 +6,12 @@ layout(location = 1) in vec4 a_start_color;
 layout(location = 2) in vec3 a_end;
 layout(location = 3) in vec4 a_end_color;
 layout(location = 4) in vec3 a_table;  // places of the ends' values, and the row
+layout(location = 5) in vec2 a_dash;   // where dashes are at the start of what is drawn, pixels; their direction
 
 uniform mat4 u_clip_from_mesh;
 uniform vec2 u_size;
 uniform float u_half_width;  // pixels
+uniform float u_chained;     // 1: dashes go on from segment to segment
 uniform vec4 u_color;        // linear; w: 0: the ends have their own, -1: their own opacity, 1: none
 
 noperspective out vec2 v_place;    // along and across the segment, pixels from its start
@@ -19,6 +21,7 @@ flat out vec4 v_start_color, v_end_color;  // of the whole segment
 flat out vec2 v_parts;             // of the whole segment, at the ends of what is drawn
 flat out vec2 v_w;                 // there
 flat out vec3 v_table;
+flat out vec2 v_dash;
 invariant gl_Position;
 
 // As in render/primitives/lines/screen_lines.cpp, which has the reasons.
@@ -76,4 +79,5 @@ void main() {
     v_parts = part;
     v_w = vec2(a.w, b.w);
     v_table = a_table;
+    v_dash = u_chained > 0.5 ? a_dash : vec2(0.0, 1.0);
 }

@@ -41,5 +41,27 @@ TEST(Wireframe, HasTheColoursOfOneFaceAtEachEdge) {
     EXPECT_EQ(std::ranges::count(segments, Rgba8{255, 0, 0, 255}, &Segment::color_a), 3);
 }
 
+// A path 3-0-2 with its rows against each other, a ring of 4, 5 and 6, and three arms that meet at 7.
+TEST(EdgeChains, GoFromEndToEnd) {
+    MeshData mesh;
+    mesh.V = Array3f(Array3f::Dense::Zero(11, 3));
+    mesh.E = Array2i(Array2i::Dense{{3, 0}, {2, 0}, {5, 4}, {5, 6}, {4, 6}, {7, 8}, {9, 7}, {7, 10}});
+    const std::vector<ChainStep> steps = edge_chains(mesh);
+    ASSERT_EQ(steps.size(), 8u);
+    const auto expect = [&](size_t i, uint32_t segment, bool reversed, bool first) {
+        EXPECT_EQ(steps[i].segment, segment) << i;
+        EXPECT_EQ(steps[i].reversed, reversed) << i;
+        EXPECT_EQ(steps[i].first, first) << i;
+    };
+    expect(0, 1, false, true);  // 2-0-3, from the first end on
+    expect(1, 0, true, false);
+    expect(2, 5, false, true);  // the arms of 7
+    expect(3, 6, true, true);
+    expect(4, 7, false, true);
+    expect(5, 2, false, true);  // 5-4-6-5
+    expect(6, 4, false, false);
+    expect(7, 3, true, false);
+}
+
 }  // namespace
 }  // namespace easypbr::gpu::line_segments_test

@@ -318,10 +318,15 @@ void check_lines() {
                         {run.random.between(0, 0.5f), run.random.between(0.5f, 1)},
                         {run.random.between(0.1f, 9), run.random.between(0.1f, 9)},
                         {run.random.between(-1, 2), run.random.between(-1, 2)},
-                        i % 4 == 0 ? 0.75f : 0.25f};
+                        i % 4 == 0 ? 0.75f : 0.25f,
+                        {run.random.between(0, 20), i % 3 == 0 ? -1.0f : 1.0f}};
             chosen[i] = uint32_t((7 * i) % count);
         }
-        kernels.draw_lines(&uniforms, region, lines, chosen, count, 1, height);
+        constexpr int first = count / 2;
+        const LineStroke strokes[2] = {{&uniforms, lines, chosen, first},
+                                       {&uniforms, lines, chosen + first, count - first}};
+        static float work[line_arrays * height * (width + stream_alignment)];
+        kernels.draw_lines(strokes, 2, region, 1, height, work);
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "easypbr/core/parallel.h"
@@ -83,6 +84,37 @@ std::vector<Segment> edge_segments(const MeshData& mesh) {
         segments[i] = segment_between(mesh, mesh.E(Eigen::Index(i), 0), mesh.E(Eigen::Index(i), 1));
     });
     return segments;
+}
+
+std::vector<ChainStep> edge_chains(const MeshData& mesh) {
+    const auto vertices = size_t(mesh.V.rows()), edges = size_t(mesh.E.rows());
+    const auto vertex = [&](size_t edge, int end) { return size_t(mesh.E(Eigen::Index(edge), end)); };
+    // The edges at each vertex, one after the other.
+    std::vector<uint32_t> first(vertices + 1), at(2 * edges);
+    for (size_t i = 0; i < edges; ++i)
+        for (const int end : {0, 1}) ++first[vertex(i, end) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    for (size_t i = 0; i < edges; ++i)
+        for (const int end : {0, 1}) at[next[vertex(i, end)]++] = uint32_t(i);
+    std::vector<ChainStep> steps;
+    steps.reserve(edges);
+    std::vector<uint8_t> taken(edges);
+    const auto follow = [&](size_t from, uint32_t edge) {
+        for (bool begins = true; !taken[edge]; begins = false) {
+            taken[edge] = 1;
+            const bool reversed = vertex(edge, 0) != from;
+            steps.push_back({edge, reversed, begins});
+            from = vertex(edge, reversed ? 0 : 1);
+            if (first[from + 1] - first[from] != 2) return;
+            edge = at[first[from]] == edge ? at[first[from] + 1] : at[first[from]];
+        }
+    };
+    for (size_t i = 0; i < vertices; ++i)
+        if (first[i + 1] - first[i] != 2)
+            for (uint32_t k = first[i]; k < first[i + 1]; ++k) follow(i, at[k]);
+    for (size_t i = 0; i < edges; ++i) follow(vertex(i, 0), uint32_t(i));
+    return steps;
 }
 
 std::vector<Segment> wireframe_segments(const MeshData& mesh) {

@@ -30,6 +30,17 @@ struct Segment {
 /// values. A segment with an end that has no value (NaN) has none.
 std::vector<Segment> edge_segments(const MeshData& mesh);
 
+/// A step along a chain of edges.
+struct ChainStep {
+    uint32_t segment = 0;   ///< row of E
+    bool reversed = false;  ///< from its second vertex to its first
+    bool first = false;     ///< of its chain
+};
+
+/// All rows of E as chains from end to end. They begin where one edge or more than two meet, at the first
+/// such vertex, and go on up to the next one; rings begin with their first row.
+std::vector<ChainStep> edge_chains(const MeshData& mesh);
+
 /// Each edge between two faces once, likewise, in the colours of the first face. Vertices at one place that
 /// were split from one (source_vertex) count as one. Edges inside of a polygon of the file (source_face) are
 /// left out.

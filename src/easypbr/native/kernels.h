@@ -159,12 +159,27 @@ struct ScreenLine {
     float ws[2] = {1, 1};                          ///< of the clip space there
     float places[2] = {};                          ///< of values in their table, as start_color
     float row = 0;                                 ///< of the table
+    /// Where dashes are at the start, in pixels from the first of them, and their direction along the line.
+    float dash[2] = {0, 1};
 };
 
-/// Draws lines by overlay_lines over rows [y0, y1) of a region, `chosen` of them, in this order. With
-/// is_depth_only the region is of r32f, and keeps the nearest depth.
-using DrawLines = void (*)(const void* uniforms, const Region& region, const ScreenLine* lines,
-                           const uint32_t* chosen, int count, int y0, int y1);
+/// Lines that are drawn alike, and count once in a pixel: `chosen` of them, in this order.
+struct LineStroke {
+    const void* uniforms = nullptr;  ///< of overlay_lines
+    const ScreenLine* lines = nullptr;
+    const uint32_t* chosen = nullptr;
+    int count = 0;
+};
+
+/// Arrays of a number for each pixel that DrawLines works in: of the stroke that is drawn and of those before
+/// it, the colour, the depth and, of the first, the rank.
+inline constexpr int line_arrays = 11;
+
+/// Draws strokes by overlay_lines over rows [y0, y1) of a region, one over the other by their depths. `work`
+/// has room for line_arrays of y1 - y0 rows of x1 - x0 + stream_alignment numbers. With is_depth_only, which
+/// all strokes have or none, the region is of r32f, and keeps the nearest depth.
+using DrawLines = void (*)(const LineStroke* strokes, int count, const Region& region, int y0, int y1,
+                           float* work);
 
 /// Nothing that is less opaque is drawn of Gaussian splats (Kerbl et al. 2023).
 inline constexpr float least_splat_alpha = 1.0f / 255;

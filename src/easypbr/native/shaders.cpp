@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/native/flush_subnormals.h"
 #include "native/instruction_sets.h"
@@ -258,17 +259,29 @@ std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs)
 EASYPBR_STREAMS(EASYPBR_RUN)
 #undef EASYPBR_RUN
 
-void draw_lines(const Inputs& inputs, const Region& region, std::span<const ScreenLine> lines, int y1) {
-    overlay_lines_uniforms uniforms;
-    uniforms.visit(Setter(inputs));
-    const Bands bands(lines, uniforms.u_half_width + 1, region.y, y1);
+void draw_lines(std::span<const Stroke> strokes, const Region& region, int y1) {
+    std::vector<overlay_lines_uniforms> uniforms(strokes.size());
+    std::vector<Bands> bands;
+    bands.reserve(strokes.size());
+    for (size_t i = 0; i < strokes.size(); ++i) {
+        uniforms[i].visit(Setter(strokes[i].inputs));
+        bands.emplace_back(strokes[i].lines, uniforms[i].u_half_width + 1, region.y, y1);
+    }
     const DrawLines kernel = chosen_set().kernels->draw_lines;
-    parallel_for(bands.first.size() - 1, 1, [&](size_t band) {
-        const uint32_t begin = bands.first[band], count = bands.first[band + 1] - begin;
+    const size_t row = size_t(std::max(0, region.x1 - region.x0) + stream_alignment);
+    parallel_for(size_t((y1 - region.y + Bands::rows - 1) / Bands::rows), 1, [&](size_t band) {
+        std::vector<LineStroke> drawn;
+        for (size_t i = 0; i < strokes.size(); ++i) {
+            const uint32_t begin = bands[i].first[band], count = bands[i].first[band + 1] - begin;
+            if (count > 0)
+                drawn.push_back(
+                    {&uniforms[i], strokes[i].lines.data(), bands[i].chosen.data() + begin, int(count)});
+        }
+        if (drawn.empty()) return;
         const FlushSubnormals flush;
         const int top = region.y + int(band) * Bands::rows;
-        kernel(&uniforms, region, lines.data(), bands.chosen.data() + begin, int(count), top,
-               std::min(top + Bands::rows, y1));
+        PooledVector<float> work(size_t(line_arrays * Bands::rows) * row);
+        kernel(drawn.data(), int(drawn.size()), region, top, std::min(top + Bands::rows, y1), work.data());
     });
 }
 

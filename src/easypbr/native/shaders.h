@@ -71,9 +71,16 @@ std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs)
 EASYPBR_STREAMS(EASYPBR_RUN)
 #undef EASYPBR_RUN
 
-/// Draws lines by overlay_lines over a region, which holds rows up to y1, in their order; on all cores.
+/// Lines that are drawn alike, and count once in a pixel.
+struct Stroke {
+    Inputs inputs;
+    std::vector<ScreenLine> lines;
+};
+
+/// Draws strokes by overlay_lines over a region, which holds rows up to y1: by their depths, in their order
+/// where these agree; with DEPTH_ONLY, which all have or none, nothing but the nearest depth. On all cores.
 /// Throws Error when a value is not of the uniform's type, Interrupted.
-void draw_lines(const Inputs& inputs, const Region& region, std::span<const ScreenLine> lines, int y1);
+void draw_lines(std::span<const Stroke> strokes, const Region& region, int y1);
 
 /// Blends splats into a tile, from the nearest on. On the calling thread.
 void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,

@@ -31,10 +31,20 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
     attribute(2, 3, gl::AttributeType::f32, offsetof(gpu::Segment, b));
     attribute(3, 4, gl::AttributeType::unorm8, offsetof(gpu::Segment, color_b));
     attribute(4, 3, gl::AttributeType::f32, offsetof(gpu::Segment, places));
+    for (const gpu::Segment& segment : segments) buffers.box.extend(Vec3(segment.a)).extend(Vec3(segment.b));
     return buffers;
 }
 
 }  // namespace
+
+void LineBuffers::set_dashes(const std::vector<std::array<float, 2>>& dashes) {
+    const auto bytes = std::as_bytes(std::span(dashes));
+    if (!dashes_) {
+        dashes_ = gl::Buffer(bytes.size());
+        array.attribute(5, dashes_, 2, gl::AttributeType::f32, int(sizeof(dashes[0])), 0, 1);
+    }
+    dashes_.update(0, bytes);
+}
 
 LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals) {
     return {{mesh.V.revision(), mesh.E.revision(), mesh.F.revision(), mesh.N.revision(), mesh.C.revision(),
@@ -43,7 +53,7 @@ LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind, const
             normals};
 }
 
-const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals) {
+LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals) {
     return buffers_.get(key_of(mesh, kind, normals),
                         [&] { return make_line_buffers(segments_of(mesh, kind, normals)); });
 }
@@ -51,6 +61,10 @@ const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind, cons
 const std::vector<gpu::Segment>& LineCache::segments(const MeshData& mesh, gpu::LineKind kind,
                                                      const gpu::NormalLines& normals) {
     return segments_.get(key_of(mesh, kind, normals), [&] { return segments_of(mesh, kind, normals); });
+}
+
+const std::vector<gpu::ChainStep>& LineCache::chains(const MeshData& mesh) {
+    return chains_.get({mesh.V.revision(), mesh.E.revision()}, [&] { return gpu::edge_chains(mesh); });
 }
 
 }  // namespace easypbr::render

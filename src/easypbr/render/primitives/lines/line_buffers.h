@@ -1,4 +1,4 @@
-// Line segments on the device: 44 bytes each.
+// Line segments on the device: 44 bytes each, and 8 where they are dashed.
 #pragma once
 
 #include <array>
@@ -16,20 +16,30 @@ struct LineBuffers {
     gl::Buffer segments;
     gl::VertexArray array;  ///< one instance per segment
     int count = 0;
+    Box3 box;  ///< of the segments
+
+    /// Where dashes are along each segment, as dashes_of() tells; not needed for solid lines.
+    void set_dashes(const std::vector<std::array<float, 2>>& dashes);
+
+  private:
+    gl::Buffer dashes_;
 };
 
 /// Segments by the revisions of the arrays they were made from, on the device or in host memory.
 class LineCache {
   public:
     /// `normals` counts for LineKind::normals alone.
-    const LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals);
+    LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, const gpu::NormalLines& normals);
     const std::vector<gpu::Segment>& segments(const MeshData& mesh, gpu::LineKind kind,
                                               const gpu::NormalLines& normals);
+    /// gpu::edge_chains().
+    const std::vector<gpu::ChainStep>& chains(const MeshData& mesh);
 
     /// Drops what was not asked for since the last call.
     void evict_unused() {
         buffers_.evict_unused();
         segments_.evict_unused();
+        chains_.evict_unused();
     }
 
   private:
@@ -38,6 +48,7 @@ class LineCache {
 
     RevisionCache<Key, LineBuffers> buffers_;
     RevisionCache<Key, std::vector<gpu::Segment>> segments_;
+    RevisionCache<std::array<uint64_t, 2>, std::vector<gpu::ChainStep>> chains_;
 };
 
 }  // namespace easypbr::render

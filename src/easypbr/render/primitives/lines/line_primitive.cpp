@@ -1,6 +1,8 @@
 #include "easypbr/render/primitives/lines/line_primitive.h"
 
 #include <algorithm>
+#include <cmath>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -12,25 +14,17 @@
 namespace easypbr::render {
 namespace {
 
-constexpr unsigned table_unit = 4;  ///< after those of surfaces and layers
+constexpr unsigned table_unit = 4;   ///< after those of surfaces and layers
+constexpr unsigned stroke_unit = 5;  ///< and of what the other program reads
+
+/// u_part of shaders/overlay_strokes.frag.
+enum class StrokePart { all, before, behind, depth, nothing };
+
+/// Premultiplied colours behind what is there.
+constexpr gl::Blending under{.source = gl::Factor::one_minus_target_alpha, .target = gl::Factor::one};
 
 /// sRGB colours that stand out on most surfaces.
 const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
-
-/// Segments of an item that are drawn alike.
-struct Stroke {
-    gpu::LineKind kind;
-    std::optional<Vec3> color;  ///< linear; nothing: the data's own
-    gpu::NormalLines normals;
-    float opacity = 1;  ///< beside that of the segments' ends
-
-    /// As the shader takes it. Lines that are the data's keep its opacity.
-    Vec4 color_or_none() const {
-        Vec4 c = Vec4::Zero();
-        if (color) c << *color, (kind == gpu::LineKind::edges ? -1.0f : 1.0f);
-        return c;
-    }
-};
 
 /// Of lines that are the shape of an item. The default of a material is none.
 std::optional<Vec3> color_of_lines(const DrawItem& item) {
@@ -40,10 +34,10 @@ std::optional<Vec3> color_of_lines(const DrawItem& item) {
     return item.material.has_default_color() ? linear_from_srgb(wireframe_color) : base;
 }
 
-std::vector<Stroke> strokes_of(const DrawItem& item) {
+std::vector<LineStroke> strokes_of(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const DrawStyle& style = item.style;
-    std::vector<Stroke> strokes;
+    std::vector<LineStroke> strokes;
     if (style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty())) {
         strokes.push_back({mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges,
                            color_of_lines(item),
@@ -66,8 +60,43 @@ Mat4 clip_from_mesh(const Frame& frame, const DrawItem& item) {
     return clip.cast<float>();
 }
 
-LineView screen_view_of(const Frame& frame, const DrawItem& item, const Vec4& color) {
-    return {.clip_from_mesh = clip_from_mesh(frame, item), .size = frame.size.cast<float>(), .color = color};
+LineView screen_view_of(const Frame& frame, const DrawItem& item, const LineStroke& stroke,
+                        LineCache& cache) {
+    LineView view{.clip_from_mesh = clip_from_mesh(frame, item),
+                  .size = frame.size.cast<float>(),
+                  .color = stroke.color_or_none(),
+                  .dash = item.style.line_dash};
+    if (stroke.is_chained(item)) view.chains = cache.chains(item.mesh());
+    return view;
+}
+
+/// The rectangle that lines of so many pixels to either side may cover: the whole picture where a part of
+/// their box is behind the camera.
+PixelRect area_of(const Frame& frame, const DrawItem& item, const Box3& box) {
+    const Mat4 clip = clip_from_mesh(frame, item);
+    const Vec2 size = frame.size.cast<float>();
+    Eigen::AlignedBox2f area;
+    for (int i = 0; i < 8; ++i) {
+        const Vec4 corner = clip * box.corner(Box3::CornerType(i)).homogeneous();
+        const Vec2 ndc = corner.head<2>() / corner.w();
+        if (!(corner.w() > 0) || !ndc.allFinite()) return frame.whole();
+        area.extend(Vec2((0.5f + 0.5f * ndc.x()) * size.x(), (0.5f - 0.5f * ndc.y()) * size.y()));
+    }
+    const float reach = item.style.line_width / 2 + 2;
+    const Vec2 low = (area.min().array() - reach).max(0.0f).min(size.array()),
+               high = (area.max().array() + reach).max(0.0f).min(size.array());
+    const int x = int(low.x()), y = int(low.y());
+    return {x, y, int(std::ceil(high.x())) - x, int(std::ceil(high.y())) - y};
+}
+
+bool is_empty(const PixelRect& area) {
+    return area.width <= 0 || area.height <= 0;
+}
+
+/// The rectangle around both; none is empty.
+PixelRect around_both(const PixelRect& a, const PixelRect& b) {
+    const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+    return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
 /// What overlay_lines.frag reads of an item, for a program or for native shaders.
@@ -79,13 +108,13 @@ void set_style(To& to, const DrawItem& item) {
 }
 
 /// Its colours are those of the item's table of values.
-bool reads_table(const DrawItem& item, const Stroke& stroke) {
+bool reads_table(const DrawItem& item, const LineStroke& stroke) {
     return !stroke.color && item.colors.values;
 }
 
 /// The same of a stroke; the table of values is set apart.
 template <class To>
-void set_colors(To& to, const DrawItem& item, const Stroke& stroke) {
+void set_colors(To& to, const DrawItem& item, const LineStroke& stroke) {
     to.set("u_nearer_end", !stroke.color && item.colors.labels ? 1.0f : 0.0f);
     to.set("u_from_table", reads_table(item, stroke) ? 1.0f : 0.0f);
     to.set("u_opacity", stroke.opacity);
@@ -114,6 +143,8 @@ void LinePrimitive::begin(const Frame& frame, DrawItems items) {
     if (Vec2i(depth_.width(), depth_.height()) != frame.size) {
         depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
         last_depth_ = gl::Texture();
+        drawn_ = Gathered();
+        stroke_ = Gathered();
     }
     if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
     framebuffer_.attach({&nearest_.drawn()}, &depth_);
@@ -121,7 +152,10 @@ void LinePrimitive::begin(const Frame& frame, DrawItems items) {
     const float none[4] = {0, 0, 0, 0};
     framebuffer_.clear_color(0, none);
     framebuffer_.clear_depth(0);
-    draw_items(frame, items, Kind::nearest);
+    const gl::DrawState nearest{.depth_test = gl::DepthTest::greater_equal, .write_depth = true};
+    const gl::Program& program = use_lines(frame, Kind::nearest, nullptr);
+    for (const DrawItem& item : items)
+        for (const LineStroke& stroke : strokes_of(item)) draw_stroke(program, frame, item, stroke, nearest);
 }
 
 void LinePrimitive::keep_last(const GBuffer& layer) {
@@ -155,12 +189,6 @@ std::vector<float> LinePrimitive::overlay_depths() const {
     return depths;
 }
 
-void LinePrimitive::add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind,
-                        const GBuffer* next) {
-    targets.display().bind();
-    draw_items(frame, items, kind, next);
-}
-
 void LinePrimitive::bind_surfaces(const gl::Program& program, const GBuffer* next) const {
     const auto bind = [&](const gl::Texture& texture, const char* sampler, unsigned unit) {
         texture.bind(unit);
@@ -171,7 +199,7 @@ void LinePrimitive::bind_surfaces(const gl::Program& program, const GBuffer* nex
     if (next) bind(next->depth.texture(), "u_next_depth", 3);
 }
 
-void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next) {
+const gl::Program& LinePrimitive::use_lines(const Frame& frame, Kind kind, const GBuffer* next) {
     std::vector<std::string> defines = camera_defines(frame);
     if (kind == Kind::nearest) defines.emplace_back("DEPTH_ONLY");
     if (kind == Kind::ordered && has_last_) defines.emplace_back("AFTER");
@@ -183,22 +211,92 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
     if (kind != Kind::nearest) nearest_.bind(2);
     program.set("u_nearest_line", 2);
     program.set("u_table", int(table_unit));
-    const gl::DrawState nearest{.depth_test = gl::DepthTest::greater_equal, .write_depth = true};
-    const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
+    return program;
+}
+
+void LinePrimitive::draw_stroke(const gl::Program& program, const Frame& frame, const DrawItem& item,
+                                const LineStroke& stroke, const gl::DrawState& state) {
+    LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normals);
+    if (buffers.count == 0) return;
+    if (stroke.is_chained(item))
+        buffers.set_dashes(dashes_of(cache_.segments(item.mesh(), stroke.kind, stroke.normals),
+                                     screen_view_of(frame, item, stroke, cache_)));
+    if (reads_table(item, stroke))
+        textures_.get(item.material.base_color_texture, gpu::TexelKind::color).bind(table_unit);
+    program.use();
+    program.set("u_clip_from_mesh", clip_from_mesh(frame, item));
+    set_style(program, item);
+    program.set("u_chained", stroke.is_chained(item) ? 1.0f : 0.0f);
+    program.set("u_color", stroke.color_or_none());
+    set_colors(program, item, stroke);
+    gl::draw_quads(state, buffers.array, buffers.count);
+}
+
+void LinePrimitive::Gathered::make(Vec2i size, const gl::Texture& ranks) {
+    if (color) return;
+    color = gl::Texture(gl::Format::rgba16f, size.x(), size.y());
+    depth = gl::Texture(gl::Format::r32f, size.x(), size.y());
+    gathering = gl::Framebuffer({&color, &depth}, &ranks);
+    colors = gl::Framebuffer({&color});
+    depths = gl::Framebuffer({&depth});
+}
+
+void LinePrimitive::add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind,
+                        const GBuffer* next) {
+    struct Drawn {
+        const DrawItem* item;
+        LineStroke stroke;
+        PixelRect area;
+    };
+    std::vector<Drawn> strokes;
+    PixelRect whole;
     for (const DrawItem& item : items) {
-        if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
-        program.set("u_clip_from_mesh", clip_from_mesh(frame, item));
-        set_style(program, item);
-        for (const Stroke& stroke : strokes_of(item)) {
+        if (is_over(item) != (kind == Kind::over)) continue;
+        for (const LineStroke& stroke : strokes_of(item)) {
             const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normals);
             if (buffers.count == 0) continue;
-            if (reads_table(item, stroke))
-                textures_.get(item.material.base_color_texture, gpu::TexelKind::color).bind(table_unit);
-            program.set("u_color", stroke.color_or_none());
-            set_colors(program, item, stroke);
-            gl::draw_quads(state, buffers.array, buffers.count);
+            const PixelRect area = area_of(frame, item, buffers.box);
+            if (is_empty(area)) continue;
+            whole = strokes.empty() ? area : around_both(whole, area);
+            strokes.push_back({&item, stroke, area});
         }
     }
+    if (strokes.empty()) return;
+    const gl::Program& lines = use_lines(frame, kind, next);
+    const gl::Program& joining = strokes_.get(camera_defines(frame));
+    joining.use();
+    set_camera_uniforms(joining, frame);
+    joining.set("u_stroke", int(stroke_unit));
+    joining.set("u_stroke_depth", int(stroke_unit + 1));
+    joining.set("u_held_depth", int(stroke_unit + 2));
+    const auto draw_part = [&](const gl::Framebuffer& to, StrokePart part, const PixelRect& area,
+                               const gl::DrawState& state) {
+        to.bind();
+        joining.use();
+        joining.set("u_part", int(part));
+        gl::DrawState scissored = state;
+        scissored.scissor = area;
+        gl::draw_screen(scissored);
+    };
+    const gl::DrawState clear{.depth_test = gl::DepthTest::always, .write_depth = true};
+    const gl::DrawState highest{.depth_test = gl::DepthTest::greater, .write_depth = true};
+    for (const Drawn& drawn : strokes) {
+        const bool is_first = &drawn == &strokes.front();
+        Gathered& to = is_first ? drawn_ : stroke_;
+        to.make(frame.size, depth_);
+        draw_part(to.gathering, StrokePart::nothing, is_first ? whole : drawn.area, clear);
+        draw_stroke(lines, frame, *drawn.item, drawn.stroke, highest);
+        if (is_first) continue;
+        stroke_.bind(stroke_unit);
+        drawn_.depth.bind(stroke_unit + 2);
+        joining.use();
+        joining.set("u_half_width", drawn.item->style.line_width / 2);
+        draw_part(drawn_.colors, StrokePart::before, drawn.area, {.blending = gl::over});
+        draw_part(drawn_.colors, StrokePart::behind, drawn.area, {.blending = under});
+        draw_part(drawn_.depths, StrokePart::depth, drawn.area, {.blending = gl::maximum});
+    }
+    drawn_.bind(stroke_unit);
+    draw_part(targets.display(), StrokePart::all, whole, {.blending = gl::over});
 }
 
 void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers) {
@@ -224,6 +322,8 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
     const PixelRect& area = to.area();
     const native::Region region =
         region_of({.target = &to, .area = area, .store = native::Store::over}, transfers);
+    std::deque<ShaderInputs> inputs;  // which the strokes refer to
+    std::vector<native::Stroke> strokes;
     for (const DrawItem& item : items) {
         if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
         ShaderInputs of_item;
@@ -234,18 +334,18 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         set_layers(of_item, kind, next);
         of_item.set("u_depth_target", *opaque_);
         if (kind != Kind::nearest) of_item.set("u_nearest_line", nearest_);
-        for (const Stroke& stroke : strokes_of(item)) {
-            ShaderInputs values = of_item;
+        for (const LineStroke& stroke : strokes_of(item)) {
+            ShaderInputs& values = inputs.emplace_back(of_item);
             if (reads_table(item, stroke))
                 values.set("u_table",
                            textures_.host(item.material.base_color_texture, gpu::TexelKind::color));
             set_colors(values, item, stroke);
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normals);
-            native::draw_lines(values.native(transfers), region,
-                               screen_lines(segments, screen_view_of(frame, item, stroke.color_or_none())),
-                               area.y + area.height);
+            strokes.push_back({values.native(transfers),
+                               screen_lines(segments, screen_view_of(frame, item, stroke, cache_))});
         }
     }
+    native::draw_lines(strokes, region, area.y + area.height);
 }
 
 }  // namespace easypbr::render

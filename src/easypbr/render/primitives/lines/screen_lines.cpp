@@ -87,17 +87,53 @@ bool project(const gpu::Segment& segment, const LineView& view, native::ScreenLi
     return true;
 }
 
+/// The lines of all segments.
+struct Projected {
+    std::vector<native::ScreenLine> lines;
+    std::vector<uint8_t> drawn;  ///< 0: nothing of it, and the line is undefined
+
+    Projected(std::span<const gpu::Segment> segments, const LineView& view)
+        : lines(segments.size()), drawn(segments.size()) {
+        parallel_for(segments.size(), 4096,
+                     [&](size_t i) { drawn[i] = project(segments[i], view, lines[i]); });
+        if (view.dash > 0) set_dashes(view);
+    }
+
+  private:
+    /// Counts the pixels that are drawn of a chain: what is cut off counts for nothing, so that nothing jumps
+    /// where a segment passes the near plane.
+    void set_dashes(const LineView& view) {
+        double length = 0;
+        for (const gpu::ChainStep& step : view.chains) {
+            if (step.first) length = 0;
+            if (!drawn[step.segment]) continue;
+            native::ScreenLine& line = lines[step.segment];
+            const double start = step.reversed ? length + double(line.length) : length;
+            line.dash[0] = float(std::fmod(start, 2 * double(view.dash)));
+            line.dash[1] = step.reversed ? -1.0f : 1.0f;
+            length += double(line.length);
+        }
+    }
+};
+
 }  // namespace
 
 std::vector<native::ScreenLine> screen_lines(std::span<const gpu::Segment> segments, const LineView& view) {
-    std::vector<native::ScreenLine> lines(segments.size());
-    std::vector<uint8_t> drawn(segments.size());
-    parallel_for(segments.size(), 4096, [&](size_t i) { drawn[i] = project(segments[i], view, lines[i]); });
+    auto [lines, drawn] = Projected(segments, view);
     size_t count = 0;
     for (size_t i = 0; i < lines.size(); ++i)
         if (drawn[i]) lines[count++] = lines[i];
     lines.resize(count);
     return lines;
+}
+
+std::vector<std::array<float, 2>> dashes_of(std::span<const gpu::Segment> segments, const LineView& view) {
+    const Projected projected(segments, view);
+    std::vector<std::array<float, 2>> dashes(segments.size());
+    std::ranges::transform(projected.lines, dashes.begin(), [](const native::ScreenLine& line) {
+        return std::array{line.dash[0], line.dash[1]};
+    });
+    return dashes;
 }
 
 }  // namespace easypbr::render
