@@ -424,7 +424,7 @@ TEST(Lines, OfManyPointsIntoTheDepthAreAsOfTwo) {
         ArrayXf::Dense C(count, 3);
         for (int i = 0; i < count; ++i) {
             const float t = float(i) / float(count - 1);
-            C.row(i) = srgb_from_linear(Vec3(t, 1 - t, 0)).transpose();
+            C.row(i) << srgb_from_linear(t), srgb_from_linear(1 - t), 0;
         }
         mesh.set_C(ArrayXf(C));
         return mesh;
