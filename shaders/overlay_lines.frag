@@ -90,9 +90,9 @@ bool is_behind_line(vec2 pixel, float depth) {
 // stroke covers is the most that any of its segments does; of those that do, one that no nearer line hides; then the one
 // whose middle is nearest: beyond their ends segments have the colour of the end.
 float rank_of(vec2 pixel, float depth, float coverage, float distance) {
-    bool is_whole = coverage >= 1.0, is_second = is_behind_line(pixel, depth);
+    bool is_whole = coverage >= 1.0, is_behind_another = is_behind_line(pixel, depth);
     float part = 0.999 * coverage + 0.001 * (1.0 - distance / (u_half_width + 0.5));
-    return (part + (is_whole ? (is_second ? 1.0 : 2.0) : 0.0)) / 3.0;
+    return (part + (is_whole ? (is_behind_another ? 1.0 : 2.0) : 0.0)) / 3.0;
 }
 
 // What part of the way from the segment's start, in space, lies at a part of its picture.

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "easypbr/io/source/source.h"
 
 namespace easypbr::log_test {
 namespace {
@@ -33,6 +37,24 @@ TEST(Log, KeepsItsSinkUntilTheProcessEnds) {
         std::exit(0);
     };
     EXPECT_EXIT(end(), testing::ExitedWithCode(heard), "");
+}
+
+struct GivenUp {};
+
+// Other threads have chunks of the file in hand when the sink throws, and finish them.
+TEST(ProgressSink, HearsNoEndOfAFileAfterItThrew) {
+    std::vector<double> parts;
+    set_progress_sink([&](std::string_view, double part) {
+        parts.push_back(part);
+        throw GivenUp();
+    });
+    constexpr size_t half = 25'000'000;
+    io::Progress progress(io::Source("", "large.ply"), 2 * half);
+    std::this_thread::sleep_for(std::chrono::milliseconds(260));
+    EXPECT_THROW(progress.advance(half), GivenUp);
+    EXPECT_NO_THROW(progress.advance(half));
+    set_progress_sink({});
+    EXPECT_EQ(parts, std::vector<double>{0.5});
 }
 
 }  // namespace

@@ -59,6 +59,14 @@ TEST(GltfShared, AMeshHasTheVerticesThatItIndexes) {
     EXPECT_EQ(node(scene, 1).F, (Array3i::Dense{{0, 1, 2}, {0, 2, 3}}));
 }
 
+TEST(GltfShared, MalformedMeshesOfNoNodeAreLeftOut) {
+    GltfBuilder file;
+    file.triangle();
+    for (const Json& mesh : {Json(nullptr), Json(7), Json{{"primitives", 7}}})
+        file.json["meshes"].push_back(mesh);
+    EXPECT_EQ(node(decode(file)).V.rows(), 3);
+}
+
 TEST(GltfShared, PrimitivesOfOneMeshShareVertices) {
     GltfBuilder file;
     const Json attributes = {{"POSITION", file.floats(two_squares, 3)}};

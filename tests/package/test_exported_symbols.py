@@ -7,8 +7,8 @@ import pytest
 
 from test_package import ROOT
 
-# Of the Itanium C++ ABI: a nested name that begins with the namespace; before it what a table, a type, a thunk, a guard or
-# a static variable of a function has.
+# Of the Itanium C++ ABI: a nested name that begins with the namespace; before it what a table, a type, a thunk, a guard
+# or a static variable of a function has.
 OWN = re.compile(r"_Z(T[VTISWH]|T[hv]n?\d+_(n?\d+_)?|GV|Z|GVZ)?N[KRO]*7easypbr")
 
 
@@ -24,7 +24,7 @@ def exported() -> set[str]:
 
 
 def test_nothing_of_other_libraries_is_exported(exported):
-    """Dear ImGui's GImGui is the plainest case: a variable of a program with its own Dear ImGui would be the library's too."""
+    """Dear ImGui's GImGui is the plainest case: a program with its own Dear ImGui would share that variable."""
     assert not sorted(name for name in exported if not OWN.match(name))
 
 

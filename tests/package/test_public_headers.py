@@ -57,9 +57,30 @@ def test_headers_need_no_other_before_them(include, tmp_path, backwards):
     compile_text(include, tmp_path, "all.cpp")
 
 
+def test_templates_of_headers_compile_without_warnings(include, tmp_path):
+    """Warnings of a template show only where a program uses it."""
+    (tmp_path / "uses.cpp").write_text("""
+#include <easypbr/easypbr.h>
+using namespace easypbr;
+
+float use(Image& image, const Image& other, const Eigen::MatrixXd& V, const Eigen::MatrixXi& F) {
+    image.pixels<float>()[0] = other.pixels<float>()[0];
+    *image.at<float>(1, 2) = *other.at<float>(2, 1);
+    const Array3i faces(F);
+    Mesh mesh(V, F), same(V, faces);
+    mesh.set_V(V);
+    mesh.set_V(Array3f(V));
+    mesh.set_positions(V);
+    mesh.add_scalar("height", Eigen::VectorXd(V.col(2)));
+    return *image.at<float>(0, 0);
+}
+""")
+    compile_text(include, tmp_path, "uses.cpp")
+
+
 @pytest.mark.parametrize("flag", ["-march=x86-64-v3", "-DEIGEN_DONT_VECTORIZE"])
 def test_another_layout_of_eigen_is_an_error_that_names_the_way_out(include, tmp_path, flag):
-    """Such a program would crash: its vectors, and types that have them, are aligned in another way than the library's."""
+    """Such a program would crash: its vectors, and types that have them, are not aligned as the library's."""
     if flag.startswith("-march") and platform.machine() != "x86_64":
         pytest.skip("an instruction set of x86-64")
     (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
@@ -71,11 +92,12 @@ def test_another_layout_of_eigen_is_an_error_that_names_the_way_out(include, tmp
 
 
 def test_matrices_by_rows_are_an_error_that_names_the_way_out(include, tmp_path):
-    """The library takes and gives them by columns: all would be transposed."""
+    """Mat3, Mat4 and poses of the library are by columns: those that cross over would be transposed."""
     (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
     command = [COMPILER, *FLAGS, "-isystem", eigen(), "-I", include, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16"]
     run(*command, "array.cpp", cwd=tmp_path)
-    done = subprocess.run([*command, "-DEIGEN_DEFAULT_TO_ROW_MAJOR", "array.cpp"], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run([*command, "-DEIGEN_DEFAULT_TO_ROW_MAJOR", "array.cpp"], cwd=tmp_path, capture_output=True,
+                          text=True)
     assert done.returncode != 0
     assert "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR" in done.stderr
 

@@ -229,5 +229,44 @@ TEST(PathGround, MirrorsShowTheShadowsOfLampsOnACatcher) {
         }
 }
 
+/// The mirrored ground of a mirror under a black roof, which leaves a strip of the sky above the horizon.
+/// The sky is 20 within 15 degrees from the zenith and 0.5 elsewhere.
+double covered_in_mirror(bool rays) {
+    constexpr int rows = 64;
+    Image sky(2 * rows, rows, 3, PixelType::f32);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < 2 * rows; ++x)
+            std::fill_n(sky.at<float>(x, y), 3, 180 * (y + 0.5) / rows < 15 ? 20.0f : 0.5f);
+    Scene scene;
+    Mesh mirror = facing_square(1.4f, surface(1, 0)), roof = facing_square(6, surface(0, 1));
+    Material black = surface(0, 1);
+    black.base_color = Vec3::Zero();
+    roof.set_material(black);
+    roof.set_T_parent_mesh(Eigen::Translation3d(0, 1.5, 0) * Eigen::AngleAxisd(pi / 2, Vec3d::UnitX()));
+    scene.show(mirror, "mirror");
+    scene.show(roof, "roof");
+    scene.set_environment(Environment(sky));
+    app::Session session = session_of_paths(scene, GroundMode::shadow, 0);
+    Settings& s = session.settings();
+    s.path.enabled = !rays;
+    s.rays.enabled = rays;
+    s.background.mode = BackgroundMode::environment;
+    s.camera.position = Vec3d(0, 0.7, 2.5);
+    s.camera.target = Vec3d(0, 0.1, 0);
+    s.camera.fov_y_deg = 2;
+    return mean_of(session, 64);
+}
+
+// The edges of the roof are 5.5 and more away from the place and 1.5 above it: at most the sky below 15.3
+// degrees is open. Of the light that would arrive, 0.5 + 19.5 sin(15)^2 = 1.81, less than 0.5 sin(15.3)^2 =
+// 0.035 is left, 1.9 % of the 0.5 that are mirrored: 0.0096.
+TEST(PathGround, MirrorsShowHowLittleOfABrightSkyIsLeft) {
+    for (const bool rays : {false, true}) {
+        const double seen = covered_in_mirror(rays);
+        EXPECT_GT(seen, 0.001) << rays;
+        EXPECT_LT(seen, 0.0096) << rays;
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::path_ground_test

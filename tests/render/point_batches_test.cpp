@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -10,7 +11,9 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include "easypbr/core/background.h"
 #include "easypbr/native/shaders.h"
+#include "easypbr/render/primitives/points/point_order.h"
 #include "easypbr/render/raster/visibility.h"
 #include "view_of_center.h"
 
@@ -176,6 +179,81 @@ TEST(PointBatches, AreLeftOutWhereTheyAreHidden) {
     asked = 0;
     tbb::task_arena(1).execute([&] { EXPECT_EQ(drawn(points, splats, &batches, whole), expected); });
     EXPECT_LT(asked, across * across + behind / 10);
+}
+
+MeshData cloud_mesh(int count) {
+    MeshData mesh;
+    mesh.V = cloud(count, 9);
+    return mesh;
+}
+
+/// Colours of 8 bits, with an alpha.
+ArrayXf::Dense colors(int count) {
+    ArrayXf::Dense C(count, 4);
+    for (int i = 0; i < count; ++i)
+        C.row(i) << float(i & 255), float(i >> 8 & 255), float(255 - (i & 255)), 9;
+    return C / 255;
+}
+
+void expect_equal(const PointBatches& batches, const ArrayXf& C) {
+    const PointColors made(batches, C);
+    for (uint32_t place = 0; place < uint32_t(C.rows()); ++place)
+        ASSERT_EQ(made.at(place), Vec3(C.row(batches.vertex_of(place)).head<3>())) << place;
+}
+
+TEST(PointColors, AreThoseOfTheVerticesToTheSameBits) {
+    constexpr int count = 70000;
+    const PointBatches batches(cloud(count, 9));
+    ArrayXf::Dense C = colors(count);
+    expect_equal(batches, ArrayXf(C));
+    // One that is between two codes.
+    C(12345, 1) = std::nextafter(C(12345, 1), 1.0f);
+    expect_equal(batches, ArrayXf(C));
+    // Of files with a large range, and without an alpha.
+    C(5, 0) = 3.5f, C(6, 2) = -1;
+    expect_equal(batches, ArrayXf(C.leftCols(3)));
+}
+
+TEST(BatchedClouds, AreMadeWhenACloudIsDrawnAgain) {
+    const MeshData large = cloud_mesh(1 << 15), small = cloud_mesh(1000);
+    BatchedClouds known;
+    EXPECT_EQ(known.draw(large, false).batches, nullptr);
+    known.draw(large, false);
+    BackgroundWork::wait_for_all();
+    const PointOrder order = known.draw(large, false);
+    EXPECT_NE(order.batches, nullptr);
+    EXPECT_EQ(order.colors, nullptr);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(known.draw(small, false).batches, nullptr);
+        BackgroundWork::wait_for_all();
+    }
+}
+
+TEST(BatchedClouds, KeepTheirBatchesWhenTheirColorsChange) {
+    MeshData mesh = cloud_mesh(1 << 15);
+    mesh.C = ArrayXf(colors(1 << 15));
+    BatchedClouds known;
+    const auto settled = [&] {
+        for (int i = 0; i < 4; ++i) {
+            known.draw(mesh, true);
+            BackgroundWork::wait_for_all();
+        }
+        return known.draw(mesh, true);
+    };
+    const PointOrder before = settled();
+    ASSERT_NE(before.colors, nullptr);
+    mesh.C = ArrayXf(ArrayXf::Dense(1 - mesh.C.array()));
+    EXPECT_EQ(known.draw(mesh, true).batches, before.batches);
+    EXPECT_EQ(known.draw(mesh, true).colors, nullptr);
+    const PointOrder after = settled();
+    EXPECT_EQ(after.batches, before.batches);
+    ASSERT_NE(after.colors, nullptr);
+    EXPECT_EQ(after.colors->at(77), Vec3(mesh.C.row(after.batches->vertex_of(77)).head<3>()));
+    // Those that nobody asks for go first.
+    known.evict_unused();
+    known.draw(mesh, true);
+    known.evict_unused();
+    EXPECT_EQ(known.draw(mesh, true).colors, after.colors);
 }
 
 }  // namespace

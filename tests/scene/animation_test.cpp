@@ -129,14 +129,20 @@ TEST(Animations, RefuseARigThatDoesNotFitTogether) {
     EXPECT_EQ(message([](AnimationRig&) {}), "taken");
     EXPECT_EQ(
         of_channel([](AnimationChannel& c) { c.values = ArrayXf(); }),
-        "animation channel: expected values of 2 rows, 1 for each of 2 times, and 3 columns, got 0 x 0");
+        "animation rig: animation 'bend', channel 0: expected values of 2 rows, 1 for each of 2 times, and 3 "
+        "columns, got 0 x 0");
+    EXPECT_EQ(of_channel([](AnimationChannel& c) { c.node = 7; }),
+              "animation rig: animation 'bend', channel 0: node 7 does not exist, there are 3");
+    EXPECT_EQ(message([](AnimationRig& rig) { rig.nodes[2].parent = 7; }),
+              "animation rig: node 7 does not exist, there are 3");
     EXPECT_EQ(of_channel([](AnimationChannel& c) {
                   c.times = {1, 1};
               }),
-              "animation channel: expected finite times that rise, got 1 as time 1 of 2, after 1");
+              "animation rig: animation 'bend', channel 0: expected finite times that rise, got 1 as time 1 "
+              "of 2, after 1");
     EXPECT_NE(of_channel([](AnimationChannel& c) { c.times[1] = NAN; }), "taken");
     EXPECT_EQ(of_channel([](AnimationChannel& c) { c.values = ArrayXf::Dense::Constant(2, 3, NAN); }),
-              "animation channel: expected finite values, got others in row 0 of 2");
+              "animation rig: animation 'bend', channel 0: expected finite values, got others in row 0 of 2");
     EXPECT_EQ(message([](AnimationRig& rig) { rig.animations[0].duration_s = -1; }),
               "animation rig: animation 'bend': expected a finite duration of at least 0, got -1");
     EXPECT_NE(message([](AnimationRig& rig) { rig.animations[0].duration_s = NAN; }), "taken");

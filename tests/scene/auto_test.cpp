@@ -6,8 +6,6 @@
 #include <string>
 #include <type_traits>
 
-#include "easypbr/scene/settings.h"
-
 namespace easypbr::auto_test {
 namespace {
 
@@ -29,12 +27,12 @@ static_assert(is_taken<Auto<bool>, AutomaticTag> && is_taken<Auto<bool>, FollowT
 static_assert(is_taken<Auto<std::string>, const char (&)[5]> && is_taken<Auto<std::string>, std::string>);
 
 TEST(Auto, TakesTruthValues) {
-    Settings settings;
-    settings.ssao.enabled = false;
-    EXPECT_TRUE(settings.ssao.enabled.is_pinned());
-    EXPECT_FALSE(settings.ssao.enabled.value_or(true));
-    settings.ssao.enabled = automatic;
-    EXPECT_FALSE(settings.ssao.enabled.value());
+    Auto<bool> enabled;
+    enabled = false;
+    EXPECT_TRUE(enabled.is_pinned());
+    EXPECT_FALSE(enabled.value_or(true));
+    enabled = automatic;
+    EXPECT_FALSE(enabled.value());
 }
 
 }  // namespace

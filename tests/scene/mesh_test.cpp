@@ -97,10 +97,10 @@ TEST(Mesh, NamesTheArrayThatDoesNotFit) {
                   d.V = Positions{{0, 0, 0}, {1, std::numeric_limits<float>::infinity(), 0}, {0, 0, 0}};
               }),
               "mesh array V: expected finite positions, got (1, inf, 0) in row 1 of 3");
-    EXPECT_NE(message_of([](MeshData& d) {
+    EXPECT_EQ(message_of([](MeshData& d) {
                   d.parts = {{"wing", 0, 2, 0}};
-              }).find("'wing'"),
-              std::string::npos);
+              }),
+              "mesh part 'wing': expected a range of the 1 faces, got 2 from face 0 on");
     EXPECT_NE(message_of([](MeshData& d) {
                   d.parts = {{"wing", 0, 1, 1}};
               }).find("material index"),
@@ -122,7 +122,7 @@ TEST(Mesh, RefusesWhatCannotBeDrawn) {
               "mesh front: expected finite numbers, got (0, nan, 0)");
     EXPECT_NE(message_of([](MeshData& d) { d.up.x() = double(nan); }), "valid");
     EXPECT_EQ(message_of([](MeshData& d) { d.T_parent_mesh.matrix()(3, 3) = 2; }),
-              "mesh T_parent_mesh: expected a last row of (0, 0, 0, 1)");
+              "mesh T_parent_mesh: expected a last row of (0, 0, 0, 1), got (0, 0, 0, 2)");
     Mesh mesh(triangle());
     Eigen::Affine3d T = Eigen::Affine3d::Identity();
     T.translation().x() = double(nan);
@@ -140,11 +140,16 @@ TEST(Mesh, PartsCoverTheFacesWithoutOverlap) {
     EXPECT_EQ(message({{"b", 2, 2, 0}, {"none", 1, 0, 0}, {"a", 0, 2, 0}}), "valid") << "in any order";
     EXPECT_EQ(
         message({{"a", 0, 3, 0}, {"b", 2, 2, 0}}),
-        "mesh parts: expected each of the 4 faces in one part, got faces 2 to 3 in two, the second 'b'");
+        "mesh parts: expected each of the 4 faces in one part, got faces 2 to 2 in two, the second 'b'");
     EXPECT_EQ(message({{"a", 0, 1, 0}, {"b", 2, 2, 0}}),
-              "mesh parts: expected each of the 4 faces in one part, got faces 1 to 2 in none");
+              "mesh parts: expected each of the 4 faces in one part, got faces 1 to 1 in none");
     EXPECT_EQ(message({{"a", 0, 3, 0}}),
-              "mesh parts: expected each of the 4 faces in one part, got faces 3 to 4 in none");
+              "mesh parts: expected each of the 4 faces in one part, got faces 3 to 3 in none");
+    EXPECT_EQ(
+        message({{"a", 0, 4, 0}, {"within", 1, 2, 0}}),
+        "mesh parts: expected each of the 4 faces in one part, got faces 1 to 2 in two, the second 'within'");
+    EXPECT_EQ(message({{"none", 0, 0, 0}}),
+              "mesh parts: expected each of the 4 faces in one part, got faces 0 to 3 in none");
 }
 
 TEST(Mesh, TexturesHavePixels) {

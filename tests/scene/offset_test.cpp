@@ -66,6 +66,12 @@ TEST(Offset, IsGivenByEveryWayToSetDoubles) {
     Mesh set;
     set.set_V(V);
     EXPECT_LE(error_of(set, V), rounding);
+    Mesh again(V, F);
+    again.set_V(V);
+    EXPECT_EQ(again.offset(), 2 * made.offset()) << "they are local";
+    again.set_offset({0, 0, 0});
+    again.set_V(V);
+    EXPECT_LE(error_of(again, V), rounding);
     EXPECT_LE(error_of(Mesh(Array3d(V), F), V), rounding);
     EXPECT_LE(error_of(Mesh(V.array() * 1.0, F), V), rounding);
     EXPECT_LE(error_of(Mesh(Positions(V), Array3i()), V), rounding);

@@ -105,12 +105,13 @@ class PassInput {
 
 /// A pass of a program's own. It is called with the context current and may use any OpenGL 4.5, by a loader
 /// of its own (libepoxy, glad, eglGetProcAddress); whatever state it leaves behind, the renderer sets back
-/// what it needs. Conditional rendering and transform feedback that it begins, it has to end.
+/// what it needs. A pass ends conditional rendering and transform feedback that it begins.
 class Pass {
   public:
     virtual ~Pass() = default;
     /// What it throws ends the picture; windows show it and keep the last picture that there was. Other
-    /// viewers may draw meanwhile; the one that calls it throws ArgumentError for another picture.
+    /// viewers may draw meanwhile. Another picture of the one that calls it is an ArgumentError; a pass must
+    /// not wait for a thread that draws one.
     virtual void draw(const PassInput& input) = 0;
     /// Changes whenever the pass would draw something else: windows draw again then.
     virtual uint64_t revision() const { return 0; }

@@ -75,14 +75,18 @@ class Image {
     /// First channel of pixel (x, y), unchecked.
     template <class T>
     const T* at(int x, int y) const {
-        return reinterpret_cast<const T*>(data_.data()) + (size_t(y) * width_ + x) * channels_;
+        return reinterpret_cast<const T*>(data_.data()) + place_of(x, y);
     }
     template <class T>
     T* at(int x, int y) {
-        return reinterpret_cast<T*>(data_.data()) + (size_t(y) * width_ + x) * channels_;
+        return reinterpret_cast<T*>(data_.data()) + place_of(x, y);
     }
 
   private:
+    size_t place_of(int x, int y) const {
+        return (size_t(y) * size_t(width_) + size_t(x)) * size_t(channels_);
+    }
+
     void swap(Image& other) noexcept {
         std::swap(width_, other.width_);
         std::swap(height_, other.height_);

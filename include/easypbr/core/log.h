@@ -26,7 +26,7 @@ using ProgressSink = std::function<void(std::string_view what, double fraction)>
 
 /// Replaces the progress sink (process-wide); called from one thread at a time, a few times per second at
 /// most. What it throws ends the operation and passes to its caller, so that it can be cancelled; no call
-/// with fraction 1 follows then. What that last call throws may be ignored, as the work is done.
+/// with fraction 1 follows then. What a call with fraction 1 throws may be ignored, as the work is done.
 void set_progress_sink(ProgressSink sink);
 
 /// Reports progress to the sink, if there is one.

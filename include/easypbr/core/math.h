@@ -10,7 +10,8 @@
 #error "EasyPBR: compile all of the program with -DEIGEN_MAX_STATIC_ALIGN_BYTES=16, as the library is"
 #endif
 
-// The library's arrays and matrices, and what is read of a program's own, are by columns.
+// Mat3, Mat4 and poses of the library are by columns; arrays name their order. Another default would
+// transpose those that cross over.
 #ifdef EIGEN_DEFAULT_TO_ROW_MAJOR
 #error "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR; types may name Eigen::RowMajor"
 #endif

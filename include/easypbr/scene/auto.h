@@ -25,7 +25,7 @@ class Auto {
   public:
     Auto() = default;
     Auto(AutomaticTag) {}
-    Auto(FollowTag) : mode_(Mode::followed) {}
+    Auto(FollowTag) : mode_(Mode::inferred_always) {}
     Auto(T value) : value_(std::move(value)), mode_(Mode::pinned) {}
     Auto(const char* text) requires std::same_as<T, std::string> : Auto(T(text)) {}
     /// A pointer would be true: also the text "auto".
@@ -34,7 +34,7 @@ class Auto {
     = delete;
 
     bool is_pinned() const { return mode_ == Mode::pinned; }
-    bool is_follow() const { return mode_ == Mode::followed; }
+    bool is_follow() const { return mode_ == Mode::inferred_always; }
 
     /// The pinned or latched value; nothing when it has still to be inferred.
     const std::optional<T>& value() const { return value_; }
@@ -44,7 +44,7 @@ class Auto {
 
     /// Keeps an inferred value. A pinned value stays as it is; one that follows keeps none.
     void latch(T inferred) {
-        if (mode_ == Mode::latched) value_ = std::move(inferred);
+        if (mode_ == Mode::inferred_once) value_ = std::move(inferred);
     }
 
     /// Forgets a latched value; a pinned one stays.
@@ -55,9 +55,9 @@ class Auto {
     bool operator==(const Auto&) const = default;
 
   private:
-    enum class Mode { latched, followed, pinned };
+    enum class Mode { inferred_once, inferred_always, pinned };
     std::optional<T> value_;
-    Mode mode_ = Mode::latched;
+    Mode mode_ = Mode::inferred_once;
 };
 
 /// Stands for Auto<T> where the value is inferred: the value itself. One definition of a group of settings

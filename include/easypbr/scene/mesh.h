@@ -72,7 +72,9 @@ class Mesh {
 
     /// Local positions; the offset stays.
     void set_V(Array3f V);
-    /// Those of another type than float, as set_positions() takes them.
+    /// Those of another type than float, as set_positions() takes them: local, so that what is subtracted is
+    /// added to the offset that the mesh has. Where V are whole coordinates again, call
+    /// set_offset({0, 0, 0}) first.
     template <class Derived>
     requires(!std::is_same_v<typename Derived::Scalar, float>) void set_V(
         const Eigen::DenseBase<Derived>& V) {

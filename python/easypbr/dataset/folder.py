@@ -16,7 +16,7 @@ from typing import Any
 from .. import _easypbr
 from ..errors import ArgumentError, FileError
 from .frame import Frame
-from .sources import absolute_file, first_difference, source_files, states_of
+from .sources import absolute_file, are_states, first_difference, source_files, states_of
 from .spec import DatasetSpec
 from .tables import ObjectSpec
 from .writers import WRITERS, Writer, outputs
@@ -171,9 +171,13 @@ def claim(spec: DatasetSpec, folder: Path) -> None:
 def check_sources(spec: DatasetSpec, folder: Path, begun: bool) -> None:
     """Adds to the spec in the folder what the files are that it names, or, of a set with finished frames, compares them: frames
     of other files would not go with these. A set that was begun by a version that kept no such list goes on. Raises
-    ArgumentError naming a file that has changed, is gone or has been added, and as source_files()."""
-    values: dict[str, Any] = json.loads((folder / "spec.json").read_text())
+    ArgumentError naming a file that has changed, is gone or has been added, or a damaged spec.json; as source_files()."""
+    path = folder / "spec.json"
+    values: dict[str, Any] = json.loads(path.read_text())
     known = values.get("files", {})
+    if not are_states(known):
+        raise ArgumentError(f"dataset: {path}: 'files' is damaged: expected size, mtime_ns and sha256 of each file, or "
+                            "null; choose another folder, or remove this one")
     if begun and "files" not in values:
         return
     found = states_of(source_files(spec, outputs(spec, folder)), known)

@@ -4,6 +4,7 @@ import hashlib
 import os
 import stat
 from collections.abc import Collection, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,19 @@ def source_files(spec: DatasetTables, outputs: Collection[Path]) -> list[str]:
 
 def states_of(files: Iterable[str], known: States) -> States:
     """How the files are. The hash of one whose size and time are the known ones is the known one: it is not read."""
-    return {file: _state(file, known.get(file)) for file in files}
+    names = list(files)
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:  # Hashes are made and files read without the GIL.
+        return dict(zip(names, pool.map(lambda file: _state(file, known.get(file)), names), strict=True))
+
+
+def are_states(values: object) -> bool:
+    """Whether these are States, as JSON holds them."""
+    return isinstance(values, dict) and all(state is None or _is_state(state) for state in values.values())
+
+
+def _is_state(state: object) -> bool:
+    return (isinstance(state, dict) and isinstance(state.get("size"), int) and isinstance(state.get("mtime_ns"), int)
+            and isinstance(state.get("sha256"), str))
 
 
 def _state(file: str, known: State) -> State:
@@ -63,7 +76,7 @@ def first_difference(known: States, found: States) -> str:
     for file in sorted({*known, *found}):
         before, now = known.get(file), found.get(file)
         if now is None and before is not None:
-            return f"{file}, a file that the set was begun with, is gone"
+            return f"{file}, a file that the set was begun with, is gone or cannot be read"
         if file not in known or (before is None and now is not None):
             return f"{file} is none of the files that the set was begun with: it has been added"
         if before is not None and now is not None and before["sha256"] != now["sha256"]:

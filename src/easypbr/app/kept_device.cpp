@@ -22,8 +22,8 @@ void KeptDevice::ask_for(DrawDevice device) {
 
 void KeptDevice::refuse_nested() {
     throw ArgumentError(
-        "this viewer is drawing: expected no other picture of it to be drawn within its passes and "
-        "callbacks");
+        "this viewer is drawing: expected its passes, and sinks of log and progress, to draw no other "
+        "picture of it");
 }
 
 bool KeptDevice::is_current() const {

@@ -272,8 +272,9 @@ Mat4d to_matrix4(nb::handle object, const char* what) {
 
 Eigen::Affine3d to_affine(nb::handle object, const char* what) {
     const Mat4d matrix = to_matrix4(object, what);
-    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-        throw ArgumentError(fmt::format("{}: expected a last row of (0, 0, 0, 1)", what));
+    if (const Eigen::RowVector4d last = matrix.row(3); last != Eigen::RowVector4d(0, 0, 0, 1))
+        throw ArgumentError(fmt::format("{}: expected a last row of (0, 0, 0, 1), got ({}, {}, {}, {})", what,
+                                        last[0], last[1], last[2], last[3]));
     return Eigen::Affine3d(matrix);
 }
 

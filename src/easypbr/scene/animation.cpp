@@ -25,10 +25,16 @@ Eigen::Quaterniond quaternion(const Eigen::VectorXd& xyzw) {
     return Eigen::Quaterniond(Eigen::Vector4d(xyzw));
 }
 
-void check_index(const char* what, int index, size_t count, bool may_lack) {
+/// `place` begins the message.
+void check_index(const char* what, int index, size_t count, bool may_lack,
+                 const char* place = "animation rig: ") {
     if ((index < 0 && !(may_lack && index == -1)) || index >= int(count))
-        throw ArgumentError(
-            fmt::format("animation rig: {} {} does not exist, there are {}", what, index, count));
+        throw ArgumentError(fmt::format("{}{} {} does not exist, there are {}", place, what, index, count));
+}
+
+/// check_index() of a channel, whose place check_animation() adds.
+void check_target(const char* what, int index, size_t count) {
+    check_index(what, index, count, false, "");
 }
 
 bool is_of_node(const AnimationChannel& channel) {
@@ -38,10 +44,10 @@ bool is_of_node(const AnimationChannel& channel) {
 /// A channel of what has parameters: materials, lights, cameras.
 template <class Item>
 void check_parameters(const AnimationChannel& channel, const char* what, const std::vector<Item>& items) {
-    check_index(what, channel.node, items.size(), false);
+    check_target(what, channel.node, items.size());
     const size_t count = items[size_t(channel.node)].parameters.size();
-    check_index("parameter", channel.parameter, count, false);
-    check_index("parameter", channel.parameter + int(channel.values.cols()) - 1, count, false);
+    check_target("parameter", channel.parameter, count);
+    check_target("parameter", channel.parameter + int(channel.values.cols()) - 1, count);
 }
 
 void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
@@ -54,7 +60,7 @@ void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
         case AnimatedProperty::camera:
             return check_parameters(channel, "camera", rig.cameras);
         default:
-            return check_index("node", channel.node, rig.nodes.size(), false);
+            return check_target("node", channel.node, rig.nodes.size());
     }
 }
 
@@ -63,7 +69,14 @@ void check_animation(const Animation& animation, const AnimationRig& rig) {
         throw ArgumentError(
             fmt::format("animation rig: animation '{}': expected a finite duration of at least 0, got {}",
                         animation.name, animation.duration_s));
-    for (const AnimationChannel& channel : animation.channels) check_channel(channel, rig);
+    for (size_t i = 0; i < animation.channels.size(); ++i) {
+        try {
+            check_channel(animation.channels[i], rig);
+        } catch (const ArgumentError& error) {
+            throw ArgumentError(fmt::format("animation rig: animation '{}', channel {}: {}", animation.name,
+                                            i, error.what()));
+        }
+    }
 }
 
 void check_skin(const Skin& skin, size_t nodes) {
@@ -446,7 +459,7 @@ Animations::Places Animations::places(const std::vector<Pose>& poses) const {
             // What hangs from it goes with the node.
             T_mesh_nodes[i] = T_parent_mesh.inverse() * T_parent_node;
         }
-        // Of a file with scales beyond all numbers.
+        // Products of a file's scales may overflow: such a mesh has no pose, and Mesh refuses it.
         if (!T_parent_mesh.matrix().allFinite()) T_parent_mesh.setIdentity();
         out.T_world_meshes[i] = T_world_parent * T_parent_mesh;
     }

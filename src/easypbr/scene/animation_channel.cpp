@@ -25,17 +25,17 @@ int columns_of(AnimatedProperty property) {
     }
 }
 
-void require_shape(const AnimationChannel& channel) {
-    if (channel.times.empty()) throw ArgumentError("animation channel: expected times, got none");
+/// `place` begins the messages.
+void require_shape(const AnimationChannel& channel, const char* place) {
+    if (channel.times.empty()) throw ArgumentError(fmt::format("{}expected times, got none", place));
     const int of_time = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
     const auto rows = Eigen::Index(channel.times.size()) * of_time;
     const Eigen::Index columns = columns_of(channel.property);
     const bool fits = columns > 0 ? channel.values.cols() == columns : channel.values.cols() > 0;
     if (channel.values.rows() != rows || !fits)
         throw ArgumentError(fmt::format(
-            "animation channel: expected values of {} rows, {} for each of {} times, and {} "
-            "columns, got {} x {}",
-            rows, of_time, channel.times.size(), columns > 0 ? fmt::format("{}", columns) : "one or more",
+            "{}expected values of {} rows, {} for each of {} times, and {} columns, got {} x {}", place, rows,
+            of_time, channel.times.size(), columns > 0 ? fmt::format("{}", columns) : "one or more",
             channel.values.rows(), channel.values.cols()));
 }
 
@@ -79,22 +79,21 @@ Eigen::VectorXd sample_raw(const AnimationChannel& channel, double time_s) {
 }  // namespace
 
 void require_keys(const AnimationChannel& channel) {
-    require_shape(channel);
+    require_shape(channel, "");
     const std::vector<float>& times = channel.times;
     for (size_t i = 0; i < times.size(); ++i)
         if (!std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1])))
-            throw ArgumentError(
-                fmt::format("animation channel: expected finite times that rise, got {} as time {} of {}{}",
-                            times[i], i, times.size(), i > 0 ? fmt::format(", after {}", times[i - 1]) : ""));
+            throw ArgumentError(fmt::format("expected finite times that rise, got {} as time {} of {}{}",
+                                            times[i], i, times.size(),
+                                            i > 0 ? fmt::format(", after {}", times[i - 1]) : ""));
     for (Eigen::Index i = 0; i < channel.values.rows(); ++i)
         if (!channel.values.row(i).allFinite())
             throw ArgumentError(
-                fmt::format("animation channel: expected finite values, got others in row {} of {}", i,
-                            channel.values.rows()));
+                fmt::format("expected finite values, got others in row {} of {}", i, channel.values.rows()));
 }
 
 Array1d sample(const AnimationChannel& channel, double time_s) {
-    require_shape(channel);
+    require_shape(channel, "animation channel: ");
     if (std::isnan(time_s)) throw ArgumentError("animation: expected a time, got nan");
     Eigen::VectorXd value = sample_raw(channel, time_s);
     if (channel.property != AnimatedProperty::rotation) return value;

@@ -18,6 +18,23 @@ namespace {
 /// Meshes within whose functions of edit() this thread is, the innermost last.
 thread_local std::vector<uint64_t> edited_meshes;
 
+/// While one lives, this thread is within a function that edits a mesh. Throws ArgumentError when it is
+/// within one of the same mesh already, whose data would never be the newest.
+class EditScope {
+  public:
+    EditScope(uint64_t mesh, const std::string& name) {
+        if (std::ranges::find(edited_meshes, mesh) != edited_meshes.end())
+            throw ArgumentError(
+                fmt::format("mesh '{}': edited within a function that edits it: change the data that the "
+                            "function is given",
+                            name));
+        edited_meshes.push_back(mesh);
+    }
+    ~EditScope() { edited_meshes.pop_back(); }
+    EditScope(const EditScope&) = delete;
+    EditScope& operator=(const EditScope&) = delete;
+};
+
 using NodeVisitor = std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>;
 
 void visit_node(const Mesh& mesh, const Eigen::Affine3d& T_world_parent, const NodeVisitor& visit,
@@ -57,9 +74,9 @@ Mesh::Mesh(Array3f V, Array3i F)
       }()) {}
 
 MeshData Mesh::recentred(const Array3d& V, const Array3i& F) {
-    LocalPositions local = local_positions(V);
+    const LocalPositions local = local_positions(V);
     MeshData data;
-    data.V = std::move(local.V);
+    data.V = local.V;
     data.offset = local.offset;
     data.F = F;
     return data;
@@ -72,18 +89,6 @@ uint64_t Mesh::identity() const {
 std::shared_ptr<const MeshData> Mesh::snapshot() const {
     std::lock_guard lock(shared_->mutex);
     return shared_->data;
-}
-
-EditScope::EditScope(uint64_t mesh, const std::string& name) {
-    if (std::ranges::find(edited_meshes, mesh) != edited_meshes.end())
-        throw ArgumentError(fmt::format(
-            "mesh '{}': edited within a function that edits it: change the data that the function is given",
-            name));
-    edited_meshes.push_back(mesh);
-}
-
-EditScope::~EditScope() {
-    edited_meshes.pop_back();
 }
 
 void Mesh::edit(const std::function<void(MeshData&)>& change) {

@@ -178,23 +178,26 @@ void require_labels(const Array1i& L, const LabelMap& map) {
 
 /// Throws unless each face is in one part.
 void require_cover(const MeshData& data) {
-    std::vector<MeshPart> parts = data.parts;
-    if (parts.empty()) return;
-    std::ranges::sort(parts, {}, &MeshPart::first_face);
-    int64_t end = 0;
-    const auto require_begin = [&](int64_t begin, const std::string& name) {
-        if (begin != end)
-            throw ArgumentError(fmt::format(
-                "mesh parts: expected each of the {} faces in one part, got faces {} to {} in {}{}",
-                data.F.rows(), std::min(begin, end), std::max(begin, end), begin > end ? "none" : "two",
-                begin > end ? "" : fmt::format(", the second '{}'", name)));
+    if (data.parts.empty()) return;
+    std::vector<const MeshPart*> parts;
+    parts.reserve(data.parts.size());
+    for (const MeshPart& part : data.parts)
+        if (part.face_count > 0) parts.push_back(&part);
+    std::ranges::stable_sort(parts, {}, &MeshPart::first_face);
+    const auto refuse = [&](int64_t first, int64_t end, const std::string& in) {
+        throw ArgumentError(
+            fmt::format("mesh parts: expected each of the {} faces in one part, got faces {} to {} in {}",
+                        data.F.rows(), first, end - 1, in));
     };
-    for (const MeshPart& part : parts) {
-        if (part.face_count == 0) continue;
-        require_begin(part.first_face, part.name);
-        end = int64_t(part.first_face) + part.face_count;
+    int64_t covered = 0;  // all faces before it are in one part
+    for (const MeshPart* const part : parts) {
+        const int64_t first = part->first_face, end = first + part->face_count;
+        if (first > covered) refuse(covered, first, "none");
+        if (first < covered)
+            refuse(first, std::min(covered, end), fmt::format("two, the second '{}'", part->name));
+        covered = end;
     }
-    require_begin(data.F.rows(), {});
+    if (covered < data.F.rows()) refuse(covered, data.F.rows(), "none");
 }
 
 void require_parts(const MeshData& data) {
@@ -202,8 +205,8 @@ void require_parts(const MeshData& data) {
         const int64_t end = int64_t(part.first_face) + part.face_count;
         if (part.first_face < 0 || part.face_count < 0 || end > data.F.rows())
             throw ArgumentError(
-                fmt::format("mesh part '{}': expected a range of the {} faces, got faces {} to {}", part.name,
-                            data.F.rows(), part.first_face, end));
+                fmt::format("mesh part '{}': expected a range of the {} faces, got {} from face {} on",
+                            part.name, data.F.rows(), part.face_count, part.first_face));
         const size_t materials = std::max<size_t>(1, data.materials.size());
         if (part.material < 0 || size_t(part.material) >= materials)
             throw ArgumentError(fmt::format("mesh part '{}': expected a material index from 0 to {}, got {}",
@@ -238,8 +241,9 @@ void require_sources(const char* name, const Array1i& sources, const char* of) {
 
 void require_pose(const char* name, const Eigen::Affine3d& T) {
     if (!T.matrix().allFinite()) throw ArgumentError(fmt::format("mesh {}: expected finite numbers", name));
-    if (T.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-        throw ArgumentError(fmt::format("mesh {}: expected a last row of (0, 0, 0, 1)", name));
+    if (const Eigen::RowVector4d last = T.matrix().row(3); last != Eigen::RowVector4d(0, 0, 0, 1))
+        throw ArgumentError(fmt::format("mesh {}: expected a last row of (0, 0, 0, 1), got ({}, {}, {}, {})",
+                                        name, last[0], last[1], last[2], last[3]));
 }
 
 void validate(const MeshData& data) {

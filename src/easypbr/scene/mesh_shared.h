@@ -4,22 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <vector>
 
 #include "easypbr/scene/mesh.h"
 
 namespace easypbr {
-
-/// While one lives, this thread is within a function that edits a mesh. Throws ArgumentError when it is
-/// within one of the same mesh already, whose data would never be the newest.
-class EditScope {
-  public:
-    EditScope(uint64_t mesh, const std::string& name);
-    ~EditScope();
-    EditScope(const EditScope&) = delete;
-    EditScope& operator=(const EditScope&) = delete;
-};
 
 struct Mesh::Shared {
     const uint64_t identity = next_revision();

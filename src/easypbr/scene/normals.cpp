@@ -229,7 +229,7 @@ detail::UnitedMesh::UnitedMesh(const MeshData& mesh) : V(mesh.V), F(mesh.F) {
     // Of a file of many more vertices the numbers are too large to be rows.
     rows = numbers_below(2 * mesh.source_vertex.rows(), mesh.source_vertex);
     require_faces(mesh.F, rows.rows());
-    Array3f::Dense places = Array3f::Dense::Zero(rows.maxCoeff() + 1, 3);
+    Array3f::Dense places = Array3f::Dense::Zero(Eigen::Index(rows.maxCoeff()) + 1, 3);
     for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) places.row(rows[i]) = mesh.V.row(i);
     Array3i::Dense faces(mesh.F.rows(), 3);
     parallel_for(size_t(faces.size()), normals_grain,

@@ -44,10 +44,11 @@ std::vector<std::string> labels_and_scalars(const MeshData& mesh, bool of_faces_
 
 /// Whether OBJ and formats of coloured vertices say an alpha mode by an opacity alone, OBJ by its map too.
 bool says_alpha_mode(const Material& material, bool has_map) {
-    if (has_map && shows_alpha_of_color(material)) return true;
-    const AlphaMode mode = material.alpha_mode.value_or(AlphaMode::opaque);
     if (!material.alpha_mode.value()) return true;
+    const AlphaMode mode = *material.alpha_mode;
     if (mode == AlphaMode::opaque) return material.opacity == 1 && !material.opacity_texture;
+    if (const Texture map = has_map ? obj_opacity_texture(material) : Texture())
+        return mode == obj_alpha_mode(material.opacity, map);
     return mode == AlphaMode::blend ? material.opacity < 1 || material.opacity_texture
                                     : bool(material.opacity_texture);
 }

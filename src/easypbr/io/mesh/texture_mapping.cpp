@@ -60,6 +60,21 @@ bool leaves_image(const Texture& texture, const MeshPart& part, const MeshData& 
     });
 }
 
+/// Whether all texels of the channel are near 0 or 1.
+bool is_binary(const Texture& texture) {
+    constexpr int tolerance = 32;  // What JPEG makes of black and white.
+    const auto has_no_grey = [&](const Image& image) {
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                if (const int value = image.at<uint8_t>(x, y)[texture.channel];
+                    value > tolerance && value < 255 - tolerance)
+                    return false;
+        return true;
+    };
+    const Image& image = *texture.image;
+    return image.type() == PixelType::u8 ? has_no_grey(image) : has_no_grey(to_u8(image));
+}
+
 }  // namespace
 
 const TextureMapping& obj_mapping() {
@@ -78,10 +93,18 @@ const TextureMapping& ply_mapping() {
     return mapping;
 }
 
-bool shows_alpha_of_color(const Material& material) {
+Texture obj_opacity_texture(const Material& material) {
     const Texture& color = material.base_color_texture;
-    return material.alpha_mode.value_or(AlphaMode::opaque) != AlphaMode::opaque && color &&
-           !material.opacity_texture && !is_fully_opaque(*color.image);
+    const bool shows_alpha = material.alpha_mode.value_or(AlphaMode::opaque) != AlphaMode::opaque && color &&
+                             !material.opacity_texture && !is_fully_opaque(*color.image);
+    if (!shows_alpha) return material.opacity_texture;
+    Texture alpha = color;
+    alpha.channel = alpha.image->channels() - 1;
+    return alpha;
+}
+
+AlphaMode obj_alpha_mode(float opacity, const Texture& texture) {
+    return opacity == 1 && is_binary(texture) ? AlphaMode::mask : AlphaMode::blend;
 }
 
 void bake_uv_transforms(const TextureMapping& mapping, MeshData& mesh) {

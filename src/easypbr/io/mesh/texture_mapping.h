@@ -20,8 +20,13 @@ const TextureMapping& obj_mapping();
 /// PLY: base colours that repeat.
 const TextureMapping& ply_mapping();
 
-/// Whether the alpha of the base colour's texture shows and no texture of the opacity is beside it.
-bool shows_alpha_of_color(const Material& material);
+/// The texture that OBJ has for a material's opacity: its own, else the alpha of the base colour's where that
+/// shows, which readers do not take out of it by themselves. Without an image: there is none.
+Texture obj_opacity_texture(const Material& material);
+
+/// The alpha mode that OBJ has for a material whose opacity has a texture: a mask where all texels of its
+/// channel are near 0 or 1 and the opacity is 1.
+AlphaMode obj_alpha_mode(float opacity, const Texture& texture);
 
 /// Where the textures of a material share a transform that the format does not have, the texture coordinates
 /// of the material's faces are transformed instead. All stay as they are where a vertex would need two.

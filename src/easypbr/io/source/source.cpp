@@ -49,8 +49,15 @@ void Progress::advance(size_t bytes) {
         lock.lock();
     else if (!lock.try_lock() || Clock::now() - last_ < std::chrono::milliseconds(250))
         return;
+    // Chunks that other threads read meanwhile may still come to the end.
+    if (given_up_) return;
     last_ = Clock::now();
-    report_progress(what_, std::min(1.0, double(done) / double(total_)));
+    try {
+        report_progress(what_, std::min(1.0, double(done) / double(total_)));
+    } catch (...) {
+        given_up_ = true;
+        throw;
+    }
 }
 
 }  // namespace easypbr::io

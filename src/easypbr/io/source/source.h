@@ -84,6 +84,7 @@ class Progress {
     std::atomic<size_t> done_{0};
     std::mutex mutex_;
     Clock::time_point last_ = Clock::now();
+    bool given_up_ = false;  ///< the sink threw; guarded by mutex_
 };
 
 }  // namespace easypbr::io

@@ -37,8 +37,7 @@ template <class Key>
     }
 }
 
-/// The same for points of a depth that is kept already, or is about to be: of equal depths the larger
-/// content, of equal contents the smaller id.
+/// The same for points of a depth that is kept already, or is about to be: of equal depths the rank decides.
 void replace_point(uint64_t& pixel, uint64_t key, const std::function<PointRank(uint32_t)>& rank) {
     const std::atomic_ref<uint64_t> cell(pixel);
     uint64_t seen = cell.load(std::memory_order_relaxed);

@@ -152,7 +152,7 @@ RayLight::Light RayLight::from_lights(const RayHit& hit, const Vec3& normal) con
     return sum;
 }
 
-Vec3 RayLight::hidden_sky(const RayHit& hit, RayRandom& random) const {
+Vec3 RayLight::open_sky(const RayHit& hit, RayRandom& random) const {
     const Vec3 chosen = random.next();
     const Vec2 u = chosen.tail<2>();
     const float bright = bright_part();
@@ -160,8 +160,7 @@ Vec3 RayLight::hidden_sky(const RayHit& hit, RayRandom& random) const {
         chosen.x() < bright ? bright_direction(u) : cosine_direction(RayFrame(hit.normal), u);
     const float matt = hit.normal.dot(direction) / float(pi);
     if (!(matt > 0)) return Vec3::Zero();
-    if (!scene_->blocked(scene_->start_at(hit, hit.normal), direction,
-                         std::numeric_limits<float>::infinity()))
+    if (scene_->blocked(scene_->start_at(hit, hit.normal), direction, std::numeric_limits<float>::infinity()))
         return Vec3::Zero();
     return sky(direction) * (matt / (bright * bright_density(direction) + (1 - bright) * matt));
 }
@@ -171,9 +170,9 @@ Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, bool scattered, 
     if (has_areas(*resolved_))
         light.arrives +=
             from_areas(*resolved_, *scene_, hit, hit.normal, random.next().tail<2>(), &light.all);
-    const Vec3 of_sky = even_sky(hit.normal);
-    light.all += of_sky;
-    light.arrives += of_sky - hidden_sky(hit, random);
+    light.all += even_sky(hit.normal);
+    // Never less than none, which a pixel could not keep.
+    light.arrives += open_sky(hit, random);
     const float all = luminance(light.all), hidden = all > 0 ? 1 - luminance(light.arrives) / all : 0;
     const float shown = 1 - resolved_->settings.ground.shadow_strength * hidden;
     return (background_ && !scattered ? *background_ : sky(direction)) * shown;

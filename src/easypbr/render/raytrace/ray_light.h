@@ -46,8 +46,8 @@ class RayLight {
         Vec3 arrives{0, 0, 0}, all{0, 0, 0};  ///< all: if nothing stood in the way
     };
     Light from_lights(const RayHit& hit, const Vec3& normal) const;
-    /// What is in the way of the sky's light on a surface, likewise, by a ray in one direction.
-    Vec3 hidden_sky(const RayHit& hit, RayRandom& random) const;
+    /// What arrives of the sky's light on a surface, likewise, by a ray in one direction.
+    Vec3 open_sky(const RayHit& hit, RayRandom& random) const;
     /// Irradiance of the open sky on a surface, divided by pi.
     Vec3 even_sky(const Vec3& normal) const;
 

@@ -41,14 +41,13 @@ struct RayScene::Scene final : RayGeometry {
         return Eigen::Affine3d(from_world * item.object->T_world_mesh);
     }
 
-    void attach(const embree::Geometry& geometry, const RayElement& element) {
+    void attach(const embree::Geometry& geometry, RayElement given) {
+        RayElement& element = *elements.emplace_back(std::make_unique<RayElement>(std::move(given)));
         const DrawItem& item = *element.item;
-        elements.push_back(std::make_unique<RayElement>(element));
-        elements.back()->unit = float(1 / world_scale);
-        elements.back()->world_from_normals =
-            item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
-        if (element.faces > 0 && item.material.transmits()) set_winding(*elements.back());
-        rtcSetGeometryUserData(geometry.get(), elements.back().get());
+        element.unit = float(1 / world_scale);
+        element.world_from_normals = item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
+        if (element.faces > 0 && item.material.transmits()) set_winding(element);
+        rtcSetGeometryUserData(geometry.get(), &element);
         calls_back |= is_filtered(item) || element.gaussians;
         if (is_filtered(item) && !element.gaussians) {
             rtcSetGeometryIntersectFilterFunction(geometry.get(), filter);
@@ -144,7 +143,7 @@ struct RayScene::Scene final : RayGeometry {
             for (uint32_t c = 0; c < triangles; ++c)
                 F[i * triangles + c] = {first, first + c + 1, first + c + 2};
         });
-        attach(geometry, element);
+        attach(geometry, std::move(element));
     }
 
     void add_gaussians(const DrawItem& item,
@@ -252,7 +251,7 @@ float RayScene::reach_beside(const Place& place) const {
     float nearest = reach_, found = reach_;
     for (const Vec3& way : {place.view, Vec3(-place.view)}) {
         const auto hit = first_hit({place.position, way, nearest}, Transmissive::layers, false);
-        if (!hit || !(hit->distance <= reach(hit->on()))) continue;
+        if (!hit || !(hit->distance <= reach(hit->on()) + rounding_at(place.position))) continue;
         nearest = hit->distance;
         found = reach(hit->on());
     }

@@ -15,10 +15,27 @@ std::vector<Eigen::Index> without_faces(const MeshData& mesh) {
     return unused;
 }
 
+const std::shared_ptr<const MeshData>& mesh_of(const DrawItem& item) {
+    return item.data ? item.data : item.object->mesh;
+}
+
+/// Calls visit(item, mode, reach) for items whose bounds differ: the parts of a mesh have the same.
+template <class Visit>
+void for_each_caster(const DrawList& casters, const Primitives& primitives, Visit&& visit) {
+    for (const auto& kind : primitives) {
+        const SceneSnapshot::Object* last = nullptr;  // the parts of a mesh follow each other
+        for (const DrawItem& item : casters.of(kind->mode())) {
+            if (!item.data && item.object == last) continue;
+            last = item.data ? nullptr : item.object;
+            visit(item, kind->mode(), kind->reach(item));
+        }
+    }
+}
+
 }  // namespace
 
 std::shared_ptr<const MeshData> CasterBounds::used(const DrawItem& item, DrawMode kind) {
-    std::shared_ptr<const MeshData> mesh = item.data ? item.data : item.object->mesh;
+    const std::shared_ptr<const MeshData>& mesh = mesh_of(item);
     if (kind != DrawMode::mesh || mesh->F.empty()) return mesh;
     const Vertices& unused =
         unused_.get({mesh->F.revision(), mesh->V.rows()}, [&] { return without_faces(*mesh); });
@@ -35,24 +52,27 @@ std::shared_ptr<const MeshData> CasterBounds::used(const DrawItem& item, DrawMod
 }
 
 Box3d CasterBounds::of(const DrawList& casters, const Primitives& primitives) {
+    std::vector<Caster> now;
+    for_each_caster(casters, primitives, [&](const DrawItem& item, DrawMode kind, double reach) {
+        const MeshData& mesh = *mesh_of(item);
+        now.push_back(
+            {mesh.V.revision(), mesh.F.revision(), kind, reach, item.object->T_world_mesh.matrix()});
+    });
+    if (now == casters_) return bounds_;
     Box3d bounds;
-    for (const auto& kind : primitives) {
-        const SceneSnapshot::Object* last = nullptr;  // the parts of a mesh follow each other
-        for (const DrawItem& item : casters.of(kind->mode())) {
-            if (!item.data && item.object == last) continue;
-            last = item.data ? nullptr : item.object;
-            SceneSnapshot one;
-            one.objects = {*item.object};
-            one.objects.front().mesh = used(item, kind->mode());
-            const Box3d box = one.bounds();
-            if (box.isEmpty()) continue;
-            const Vec3d reach = Vec3d::Constant(kind->reach(item));
-            bounds.extend(Box3d(box.min() - reach, box.max() + reach));
-        }
-    }
+    for_each_caster(casters, primitives, [&](const DrawItem& item, DrawMode kind, double reach) {
+        SceneSnapshot one;
+        one.objects = {*item.object};
+        one.objects.front().mesh = used(item, kind);
+        const Box3d box = one.bounds();
+        if (box.isEmpty()) return;
+        const Vec3d margin = Vec3d::Constant(reach);
+        bounds.extend(Box3d(box.min() - margin, box.max() + margin));
+    });
     unused_.evict_unused();
     meshes_.evict_unused();
-    return bounds;
+    casters_ = std::move(now);
+    return bounds_ = bounds;
 }
 
 }  // namespace easypbr::render

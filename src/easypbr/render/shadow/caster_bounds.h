@@ -12,7 +12,7 @@
 
 namespace easypbr::render {
 
-/// Keeps what it has found of meshes for as long as it is asked for in each frame.
+/// Keeps what it has found: of all casters while these stay the same, of meshes for as long as they cast.
 class CasterBounds {
   public:
     /// Of the items of a list in world space, with what reaches beyond their vertices; of meshes by the
@@ -20,10 +20,22 @@ class CasterBounds {
     Box3d of(const DrawList& casters, const Primitives& primitives);
 
   private:
+    /// All that the bounds of an item depend on.
+    struct Caster {
+        uint64_t V, F;
+        DrawMode kind;
+        double reach;
+        Eigen::Matrix4d pose;
+
+        bool operator==(const Caster&) const = default;
+    };
+
     /// What is drawn of an item; of a mesh without the vertices that no face has.
     std::shared_ptr<const MeshData> used(const DrawItem& item, DrawMode kind);
 
     using Vertices = std::vector<Eigen::Index>;
+    std::vector<Caster> casters_;
+    Box3d bounds_;  ///< of these
     RevisionCache<std::pair<uint64_t, Eigen::Index>, Vertices>
         unused_;  ///< by the faces, and how many vertices
     RevisionCache<std::pair<uint64_t, uint64_t>, std::shared_ptr<const MeshData>> meshes_;

@@ -221,9 +221,11 @@ void set_visibility_at_rest(const GltfDocument& document, AnimationRig& rig) {
 /// Whether nodes may have other vertices at rest than their meshes: by skins or weights of morph targets.
 bool deforms_at_rest(const GltfDocument& document) {
     if (document.count("skins") > 0) return true;
+    // What no node uses may be malformed.
+    const auto has_weights = [](const Json& item) { return item.is_object() && member(item, "weights"); };
     for (const char* array : {"meshes", "nodes"})
-        for (size_t i = 0; i < document.count(array); ++i)
-            if (member(document.item(array, i), "weights")) return true;
+        if (document.count(array) > 0 && std::ranges::any_of(document.root().at(array), has_weights))
+            return true;
     return false;
 }
 

@@ -184,8 +184,9 @@ class SceneReader {
         if (!mesh && data.children.empty()) return std::nullopt;
         const Mesh node(std::move(data));
         if (!rig_.nodes.empty()) animate(index, json, node, copies ? nullptr : source);
-        if (!rig_.animations.empty() && copies)
-            for (size_t i = 0; i < copies->size(); ++i) animate_materials(*source, node.children()[i]);
+        if (rig_.animations.empty() || !copies) return node;
+        const std::vector<Mesh> children = node.children();
+        for (size_t i = 0; i < copies->size(); ++i) animate_materials(*source, children[i]);
         return node;
     }
 
@@ -231,9 +232,10 @@ class SceneReader {
         node.weights = source->weights;
         if (const auto weights = document_.numbers(json, "weights", source->weights.size()))
             node.weights.assign(weights->begin(), weights->end());
+        const std::vector<Mesh> children = mesh.children();
         for (size_t i = 0; i < source->children.size(); ++i)
             if (const Deformation& deformation = source->children[i].deformation; !deformation.empty())
-                animate_part(index, mesh.children()[i], deformation);
+                animate_part(index, children[i], deformation);
     }
 
     /// The same of a part of a node's mesh: it follows the node's joints, and its weights as they change.
@@ -261,8 +263,9 @@ class SceneReader {
             if (const auto animated =
                     source.materials[place] ? pointers_.animated(*source.materials[place]) : std::nullopt)
                 rig_.materials[*animated].users.emplace_back(mesh, place);
+        const std::vector<Mesh> children = mesh.children();
         for (size_t i = 0; i < source.children.size(); ++i)
-            animate_materials(source.children[i], mesh.children()[i]);
+            animate_materials(source.children[i], children[i]);
     }
 
     const GltfMesh& mesh_of(size_t index) {

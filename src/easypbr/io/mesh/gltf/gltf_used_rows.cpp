@@ -39,8 +39,10 @@ IndicesByPosition indices_by_position(const Json& mesh) {
 std::set<size_t> gltf_shared_positions(const GltfDocument& document) {
     IndicesByPosition first_uses;
     std::set<size_t> shared;
-    for (size_t i = 0; i < document.count("meshes"); ++i)
-        for (auto& [position, indices] : indices_by_position(document.item("meshes", i)))
+    const Json* meshes = member(document.root(), "meshes");
+    if (!meshes || !meshes->is_array()) return shared;
+    for (const Json& mesh : *meshes)
+        for (const auto& [position, indices] : indices_by_position(mesh))
             if (first_uses.try_emplace(position, indices).first->second != indices) shared.insert(position);
     return shared;
 }

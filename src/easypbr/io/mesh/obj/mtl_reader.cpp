@@ -6,10 +6,12 @@
 #include <cmath>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
+#include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/io/source/text_scanner.h"
 
 namespace easypbr::io {
@@ -22,16 +24,6 @@ struct MtlEntry {
     std::optional<float> roughness, metallic, exponent;
     std::optional<float> dissolve, transparency;  ///< d, Tr
 };
-
-/// Whether all texels of a texture's channel are near 0 or 1, but for what JPEG makes of them.
-bool is_binary(const Texture& texture) {
-    const Image image = to_u8(*texture.image);
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x)
-            if (const int value = image.at<uint8_t>(x, y)[texture.channel]; value > 32 && value < 255 - 32)
-                return false;
-    return true;
-}
 
 /// Whether red, green and blue are the same in nearly all texels, but for what JPEG makes of them.
 bool is_grey(const Image& image) {
@@ -99,6 +91,20 @@ struct MapLine {
     float bump = 1;
 };
 
+/// What was found by walking over images, once for each: many materials may share one.
+template <class Key, class Value>
+class FoundInImages {
+  public:
+    template <class Find>
+    const Value& of(const Key& key, Find&& find) {
+        const auto known = values_.find(key);
+        return known != values_.end() ? known->second : values_.emplace(key, find()).first->second;
+    }
+
+  private:
+    std::map<Key, Value> values_;
+};
+
 class MtlParser {
   public:
     MtlParser(const Source& source, TextureLoader& textures)
@@ -124,6 +130,8 @@ class MtlParser {
     }
 
   private:
+    using ImagePointer = std::shared_ptr<const Image>;
+
     void parse_line(const std::string& keyword) {
         if (keyword.starts_with("map_") || keyword == "bump" || keyword == "norm" || keyword == "disp" ||
             keyword == "decal" || keyword == "refl") {
@@ -190,16 +198,21 @@ class MtlParser {
     /// Images with alpha are given for it; of others the luminance is meant.
     void parse_opacity_map() {
         MapLine map = map_line();
-        if (map.texture && map.channel == 0)
-            map.texture.channel = alpha_channel(*map.texture.image).value_or(0);
+        if (const ImagePointer& image = map.texture.image; image && map.channel == 0)
+            map.texture.channel =
+                alpha_channels_.of(image, [&] { return alpha_channel(*image); }).value_or(0);
         entry_->material.opacity_texture = map.texture;
+    }
+
+    bool is_grey_image(const ImagePointer& image) {
+        return greys_.of(image, [&] { return is_grey(*image); });
     }
 
     /// Exporters write normal maps under the keywords of height maps as well; a height map is grey.
     void parse_normal_map(const std::string& keyword) {
         const MapLine map = map_line();
         if (!map.texture) return;
-        if (keyword != "norm" && is_grey(*map.texture.image)) {
+        if (keyword != "norm" && is_grey_image(map.texture.image)) {
             log_warning(fmt::format("{}: height maps are not supported, '{}' is left out",
                                     source_.path.string(), map.texture.path));
             return;
@@ -272,8 +285,9 @@ class MtlParser {
 
     /// No file holds the luminance of a coloured image.
     void take_luminance(Texture& texture) {
-        std::shared_ptr<const Image>& luminance = luminances_[texture.image];
-        if (!luminance) luminance = is_grey(*texture.image) ? texture.image : luminance_of(*texture.image);
+        const ImagePointer luminance = luminances_.of(texture.image, [&] {
+            return is_grey_image(texture.image) ? texture.image : luminance_of(*texture.image);
+        });
         if (luminance == texture.image) return;
         texture.image = luminance;
         texture.path.clear();
@@ -292,8 +306,10 @@ class MtlParser {
         m.metallic = std::clamp(entry_->metallic.value_or(m.metallic_texture ? 1.0f : 0.0f), 0.0f, 1.0f);
         m.roughness = std::clamp(roughness(), 0.0f, 1.0f);
         m.opacity = std::clamp(opacity(), 0.0f, 1.0f);
-        const bool is_masked = m.opacity_texture && m.opacity == 1 && is_binary(m.opacity_texture);
-        if (m.opacity < 1 || m.opacity_texture) m.alpha_mode = is_masked ? AlphaMode::mask : AlphaMode::blend;
+        if (m.opacity < 1) m.alpha_mode = AlphaMode::blend;
+        if (const Texture& map = m.opacity_texture)
+            m.alpha_mode = alpha_modes_.of({map.image, {map.channel, m.opacity == 1}},
+                                           [&] { return obj_alpha_mode(m.opacity, map); });
         // The alpha of base colours multiplies the opacity, so that it would count twice.
         if (is_alpha_of(m.base_color_texture, m.opacity_texture)) m.opacity_texture = {};
         materials_.try_emplace(m.name, m);
@@ -336,7 +352,11 @@ class MtlParser {
     std::string first_opaque_;  ///< the name of the first
     std::optional<MtlEntry> entry_;
     std::map<std::string, Material> materials_;
-    std::map<std::shared_ptr<const Image>, std::shared_ptr<const Image>> luminances_;  ///< of images
+    FoundInImages<ImagePointer, ImagePointer> luminances_;
+    FoundInImages<ImagePointer, bool> greys_;
+    FoundInImages<ImagePointer, std::optional<int>> alpha_channels_;
+    /// By image, channel and whether the opacity beside it is 1.
+    FoundInImages<std::pair<ImagePointer, std::pair<int, bool>>, AlphaMode> alpha_modes_;
 };
 
 }  // namespace

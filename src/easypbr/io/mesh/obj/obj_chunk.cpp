@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "easypbr/io/source/text_scanner.h"
@@ -159,29 +160,43 @@ class ChunkParser {
         const size_t values = chunk_.edges.values.size(), relative = chunk_.edges.relative.size();
         size_t count = 0;
         bool is_whole = true;
+        LineCorners corners;
         for (skip(); is_whole && !at_line_end(); skip(), ++count) {
             if (count > 1) repeat_last_edge_end();
-            is_whole = parse_line_corner(line);
+            is_whole = parse_line_corner(line, corners);
         }
         if (is_whole && count > 1) return;
         skip_continued_lines();
         if (p_ == source_.end())
-            fail_at_line(source_, line, "'l' needs at least 2 vertices, each v, v/t or v//n");
+            fail_at_line(source_, line, "'l' needs at least 2 vertices, each v, v/t, v//n or v/t/n");
         chunk_.edges.values.resize(values);
         chunk_.edges.relative.resize(relative);
         if (chunk_.broken_line_count++ == 0) chunk_.first_broken_line = line;
     }
 
-    /// v, v/t or v//n. Of a corner the position counts; false: it is none.
-    bool parse_line_corner(const char* line) {
+    /// What the corners of an 'l' so far have in common.
+    struct LineCorners {
+        int fewest_slashes = 2;
+        bool some_have_all = false;  ///< v/t/n
+    };
+
+    /// v, v/t, v//n or v/t/n. Of a corner the position counts; false: it is none. Beside others with fewer
+    /// slashes v/t/n is two corners of VTK without a blank.
+    bool parse_line_corner(const char* line, LineCorners& corners) {
         const char* p = p_;
-        if (int32_t index = 0; !read_integer(p, end_, index)) return false;
+        int32_t ignored = 0;
+        if (!read_integer(p, end_, ignored)) return false;
         add_index(line, obj_position, chunk_.edges);
-        for (int slashes = 0; slashes < 2 && !at_corner_end() && *p_ == '/'; ++slashes) {
+        int slashes = 0;
+        bool has_uv = false;
+        for (; slashes < 2 && p_ != end_ && *p_ == '/'; ++slashes) {
             ++p_;
-            if (int32_t ignored = 0; read_integer(p_, end_, ignored)) break;
+            const bool has_index = read_integer(p_, end_, ignored);
+            has_uv = has_uv || (has_index && slashes == 0);
         }
-        return at_corner_end();
+        corners.fewest_slashes = std::min(corners.fewest_slashes, slashes);
+        corners.some_have_all = corners.some_have_all || (has_uv && slashes == 2);
+        return at_corner_end() && !(corners.some_have_all && corners.fewest_slashes < 2);
     }
 
     void repeat_last_edge_end() {

@@ -191,9 +191,9 @@ class ObjReader {
             count += chunk.broken_line_count;
         }
         if (count > 0)
-            log_warning(fmt::format("{}: 'l' needs at least 2 vertices, each v, v/t or v//n: left out{}",
-                                    line_name(source_, first),
-                                    count > 1 ? fmt::format(", {} such lines in all", count) : ""));
+            log_warning(fmt::format(
+                "{}: 'l' needs at least 2 vertices, each v, v/t, v//n or v/t/n: left out{}",
+                line_name(source_, first), count > 1 ? fmt::format(", {} such lines in all", count) : ""));
     }
 
     void join_edges() {
@@ -240,10 +240,13 @@ class ObjReader {
         return material;
     }
 
-    /// The files of a line 'mtllib': all of it is one name, or there are several between blanks.
+    /// The files of a line 'mtllib': all of it is one name, or there are several between blanks. The bare
+    /// name of a whole line is the end of its last one: it counts where there are not several.
     std::vector<fs::path> libraries_of(const std::string& line) const {
         const fs::path folder = source_.path.parent_path();
-        if (const auto path = find_named_file({folder}, line)) return {*path};
+        const fs::path whole = place_of_named_file(folder, line);
+        for (const fs::path& path : {folder / line, whole})
+            if (exists_in_scope(path)) return {path};
         std::vector<fs::path> paths;
         bool are_several = false, are_mtl = true;
         const std::string_view names = without_comment(line);
@@ -255,8 +258,10 @@ class ObjReader {
             are_mtl = are_mtl && extension_of(name) == "mtl";
             paths.push_back(path ? *path : place_of_named_file(folder, name));
         }
+        if (paths.size() > 1 && are_mtl) return paths;
+        if (const auto path = find_named_file({folder}, line)) return {*path};
         if (are_several || are_mtl) return paths;
-        return {place_of_named_file(folder, line)};
+        return {whole};
     }
 
     std::map<std::string, Material> load_libraries() const {

@@ -163,17 +163,9 @@ class MtlWriter {
         map("map_Ke", "emissive", m.emissive_texture);
         map("map_Pr", "roughness", m.roughness_texture);
         map("map_Pm", "metallic", m.metallic_texture);
-        map("map_d", opacity_kind, opacity_texture(m));
+        map("map_d", opacity_kind, obj_opacity_texture(m));
         map("norm", "normal", m.normal_texture,
             m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
-    }
-
-    /// Readers take no alpha out of base colours by themselves.
-    static Texture opacity_texture(const Material& m) {
-        if (!shows_alpha_of_color(m)) return m.opacity_texture;
-        Texture alpha = m.base_color_texture;
-        alpha.channel = alpha.image->channels() - 1;
-        return alpha;
     }
 
     template <class... Values>

@@ -64,7 +64,7 @@ const std::vector<gpu::Segment>& LineCache::segments(const MeshData& mesh, gpu::
 }
 
 const std::vector<gpu::ChainStep>& LineCache::chains(const MeshData& mesh) {
-    return chains_.get({mesh.V.revision(), mesh.E.revision()}, [&] { return gpu::edge_chains(mesh); });
+    return chains_.get({uint64_t(mesh.V.rows()), mesh.E.revision()}, [&] { return gpu::edge_chains(mesh); });
 }
 
 }  // namespace easypbr::render

@@ -48,6 +48,7 @@ class LineCache {
 
     RevisionCache<Key, LineBuffers> buffers_;
     RevisionCache<Key, std::vector<gpu::Segment>> segments_;
+    /// By how many vertices there are, and the edges.
     RevisionCache<std::array<uint64_t, 2>, std::vector<gpu::ChainStep>> chains_;
 };
 

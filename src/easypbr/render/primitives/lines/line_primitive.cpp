@@ -284,6 +284,8 @@ void LinePrimitive::add(const Frame& frame, DrawItems items, const GBuffer& targ
         const bool is_first = &drawn == &strokes.front();
         Gathered& to = is_first ? drawn_ : stroke_;
         to.make(frame.size, depth_);
+        // No texture may be drawn to while a program could read it.
+        for (unsigned k = 0; k < 3; ++k) nearest_.bind(stroke_unit + k);
         draw_part(to.gathering, StrokePart::nothing, is_first ? whole : drawn.area, clear);
         draw_stroke(lines, frame, *drawn.item, drawn.stroke, highest);
         if (is_first) continue;
@@ -293,6 +295,7 @@ void LinePrimitive::add(const Frame& frame, DrawItems items, const GBuffer& targ
         joining.set("u_half_width", drawn.item->style.line_width / 2);
         draw_part(drawn_.colors, StrokePart::before, drawn.area, {.blending = gl::over});
         draw_part(drawn_.colors, StrokePart::behind, drawn.area, {.blending = under});
+        stroke_.depth.bind(stroke_unit + 2);
         draw_part(drawn_.depths, StrokePart::depth, drawn.area, {.blending = gl::maximum});
     }
     drawn_.bind(stroke_unit);
@@ -343,6 +346,11 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normals);
             strokes.push_back({values.native(transfers),
                                screen_lines(segments, screen_view_of(frame, item, stroke, cache_))});
+            if (kind != Kind::nearest) continue;
+            // One at a time: they are not put over each other.
+            native::draw_lines(strokes, region, area.y + area.height);
+            strokes.clear();
+            inputs.clear();
         }
     }
     native::draw_lines(strokes, region, area.y + area.height);

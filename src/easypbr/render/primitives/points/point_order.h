@@ -22,7 +22,7 @@ class PointColors {
     /// Of all points of the batches: n x 3 or n x 4, of which alpha is left out. On all cores.
     PointColors(const PointBatches& batches, const ArrayXf& C);
 
-    /// As in C, to the same bits.
+    /// The same numbers as in C.
     Vec3 at(uint32_t place) const {
         if (codes_.empty())
             return Vec3(values_[3 * size_t(place)], values_[3 * size_t(place) + 1],

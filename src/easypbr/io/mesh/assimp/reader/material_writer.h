@@ -11,8 +11,8 @@ namespace easypbr::io {
 void write_images(const aiScene& scene, MessageWriter& out);
 
 /// All materials, in assimp's order. PBR keys are taken where there are any; else diffuse colour (linear, as
-/// in MTL; of 3MF sRGB with an alpha) and shininess n, as roughness^4 = 2 / (n + 2) (Walter et al. 2007: Phong
-/// lobe of equal width).
+/// in MTL; of 3MF sRGB with an alpha) and shininess n, as roughness^4 = 2 / (n + 2) (Walter et al. 2007:
+/// Phong lobe of equal width).
 void write_materials(const aiScene& scene, bool is_3mf, MessageWriter& out);
 
 }  // namespace easypbr::io
