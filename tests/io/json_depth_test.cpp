@@ -1,9 +1,9 @@
-// JSON that is nested deeper than the stack is refused by all that reads JSON.
+// JSON that is nested deeper than the stack is refused by all that reads JSON; of settings see
+// settings_test.cpp.
 #include <gtest/gtest.h>
 
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_text.h"
-#include "easypbr/io/settings/settings_io.h"
 #include "easypbr/io/source/json_depth.h"
 #include "io/gltf_decoded.h"
 
@@ -49,7 +49,6 @@ TEST(JsonDepth, IsLimitedForEveryReader) {
         "\"count\":1,\"type\":\"VEC3\"}]}";
     const std::vector<std::string> messages = {
         refusal([&] { io::decode_gltf(as_span(gltf), "deep"); }),
-        refusal([&] { io::parse_settings("{\"easypbr\":1,\"settings\":" + deep + "}", "deep"); }),
         refusal([&] { io::parse_camera_path("{\"keys\":[{\"position\":" + deep + "}]}", "deep"); }),
         refusal([&] { io::parse_label_map("{\"classes\":" + deep + "}", "deep.json"); })};
     for (const std::string& message : messages)

@@ -163,6 +163,12 @@ TEST(SettingsFile, SaysWhatIsWrong) {
     EXPECT_THROW(io::load_settings("missing.json"), FileError);
 }
 
+TEST(SettingsFile, OfDeepJsonIsRefused) {
+    const std::string deep = std::string(300000, '[') + std::string(300000, ']');
+    const std::string message = parse_message("{\"easypbr\":1,\"settings\":" + deep + "}");
+    EXPECT_NE(message.find("nested more than 512 levels deep"), std::string::npos) << message;
+}
+
 TEST(SettingsFile, HashesContent) {
     const TemporaryFolder folder;
     write_file(folder / "a", std::string_view("content"));

@@ -261,7 +261,7 @@ __attribute__((flatten)) void draw_lines(const LineStroke* strokes, int count, c
         if (i == 0) band.clear(band.rank, y1 - y0);
         if (i == 0 && many) band.clear(band.others.depth, y1 - y0);
         draw_stroke(s, strokes[i], region, y0, y1, &band);
-        if (many) join_stroke(s, band, y0, y1);
+        if (many) join_stroke(s, band, region, y0, y1);
     }
     if (count == 0 || s.is_depth_only) return;
     if (many)

@@ -143,9 +143,10 @@ INLINE void draw_stroke(overlay_lines& s, const LineStroke& stroke, const Region
 }
 
 /// Puts the stroke before or behind the others, and empties it.
-INLINE void join_stroke(overlay_lines& s, LineBand& band, int y0, int y1) {
+INLINE void join_stroke(overlay_lines& s, LineBand& band, const Region& region, int y0, int y1) {
+    const int past = band.past < region.x1 ? band.past : region.x1;
     for (int y = y0; y < y1; ++y)
-        for (int x = band.first; x < band.past; x += lanes) {
+        for (int x = band.first; x < past; x += lanes) {
             const size_t at = band.stroke.at(x, y);
             const vbool seen = load_lanes(band.rank, at) > 0.0f;
             if (!any_lane(seen)) continue;
