@@ -67,7 +67,8 @@ struct LineBand {
     LinePixels others;  ///< the strokes before it; defined where the depth is above 0
 
     LineBand(const Region& region, int y0, int y1, float* work) {
-        const size_t row = size_t(region.x1 - region.x0 + stream_alignment), size = size_t(y1 - y0) * row;
+        const size_t row = size_t(region.x1 - region.x0) + size_t(stream_alignment),
+                     size = size_t(y1 - y0) * row;
         for (LinePixels* pixels : {&stroke, &others}) {
             for (float*& channel : pixels->color) {
                 channel = work;

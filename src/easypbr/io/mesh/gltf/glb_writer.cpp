@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <compare>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -36,7 +35,10 @@ struct MeshContent {
     bool is_flat = false;
     uint64_t rest_shape = 0, rest_shape_faces = 0;  ///< which decide on sharp edges
 
-    auto operator<=>(const MeshContent&) const = default;
+    auto values() const {
+        return std::tie(revisions, scalars, parts, materials, is_flat, rest_shape, rest_shape_faces);
+    }
+    bool operator<(const MeshContent& other) const { return values() < other.values(); }
 };
 
 /// Equal materials that are written once. The key holds enough of them that few others have the same.

@@ -44,8 +44,8 @@ class MeshReader {
         });
         source_.target_count = target_count(*primitives);
         for (const Json& primitive : *primitives) add(primitive);
-        std::ranges::stable_partition(
-            groups_, [](const GltfPrimitiveGroup& group) { return group.kind == GltfKind::faces; });
+        std::stable_partition(groups_.begin(), groups_.end(),
+                              [](const GltfPrimitiveGroup& group) { return group.kind == GltfKind::faces; });
         const std::string name = document_.text(source_.json, "name");
         if (groups_.empty() && splats_.size() == 1) {
             splats_[0].data.name = name;
