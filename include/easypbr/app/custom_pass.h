@@ -120,7 +120,7 @@ class Pass {
 /// A pass of one fragment shader.
 class ShaderPass : public Pass {
   public:
-    explicit ShaderPass(FragmentShader fragment, Blend blend = Blend::over);
+    explicit ShaderPass(const FragmentShader& fragment, Blend blend = Blend::over);
     /// As FragmentShader takes them.
     explicit ShaderPass(const std::filesystem::path& file, Blend blend = Blend::over);
     ShaderPass(const std::string& name, const std::string& text, Blend blend = Blend::over);

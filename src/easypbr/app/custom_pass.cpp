@@ -133,7 +133,7 @@ void PassInput::draw(const FragmentShader& shader, Blend blend) const {
     frame_.input.draw(program, blend);
 }
 
-ShaderPass::ShaderPass(FragmentShader fragment, Blend blend) : shader(std::move(fragment)), blend_(blend) {}
+ShaderPass::ShaderPass(const FragmentShader& fragment, Blend blend) : shader(fragment), blend_(blend) {}
 
 ShaderPass::ShaderPass(const std::filesystem::path& file, Blend blend)
     : ShaderPass(FragmentShader(file), blend) {}

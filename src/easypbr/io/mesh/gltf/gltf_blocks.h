@@ -2,11 +2,11 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "easypbr/io/mesh/gltf/gltf_document.h"
@@ -25,7 +25,10 @@ struct GltfBlockAccessors {
     /// The buffer view with the compressed vertices, of which there may be several for the same accessors.
     Accessor compressed;
 
-    auto operator<=>(const GltfBlockAccessors&) const = default;
+    auto all() const {
+        return std::tie(position, normal, uv, color, tangent, influences, values, targets, compressed);
+    }
+    bool operator<(const GltfBlockAccessors& other) const { return all() < other.all(); }
 };
 
 /// Those of a primitive. `uv_set`: the texture coordinates that its material asks for; without them those of
