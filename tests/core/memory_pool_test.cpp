@@ -69,7 +69,8 @@ TEST(MemoryPool, ThrowsWhereThereIsNone) {
     const PooledMemory before = pooled_memory();
     EXPECT_THROW(static_cast<void>(take_pooled(SIZE_MAX)), std::bad_alloc);
     EXPECT_THROW(static_cast<void>(take_pooled(SIZE_MAX / 4)), std::bad_alloc);
-    EXPECT_THROW(static_cast<void>(PoolAllocator<double>().allocate(SIZE_MAX / 4)), std::bad_alloc);
+    EXPECT_THROW(static_cast<void>(PooledVector<double>().get_allocator().allocate(SIZE_MAX / 4)),
+                 std::bad_alloc);
     EXPECT_EQ(pooled_memory().given, before.given);
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
-#include <new>
 #include <vector>
+
+#include "easypbr/core/uninitialized_allocator.h"
 
 namespace easypbr {
 
@@ -27,34 +27,8 @@ struct PooledMemory {
 };
 PooledMemory pooled_memory();
 
-/// An allocator of std::vector by the pool. Elements that are given no value are undefined.
+/// Elements that are given no value are undefined.
 template <class T>
-struct PoolAllocator {
-    using value_type = T;
-    PoolAllocator() = default;
-    template <class U>
-    PoolAllocator(const PoolAllocator<U>& /*other*/) noexcept {}  // NOLINT(google-explicit-constructor)
-
-    T* allocate(size_t count) {
-        if (count > std::numeric_limits<size_t>::max() / sizeof(T)) throw std::bad_array_new_length();
-        return static_cast<T*>(take_pooled(count * sizeof(T)));
-    }
-    void deallocate(T* memory, size_t count) noexcept { give_pooled(memory, count * sizeof(T)); }
-    template <class U>
-    void construct(U* at) {
-        ::new (static_cast<void*>(at)) U;
-    }
-    template <class U, class Value>
-    void construct(U* at, Value&& value) {
-        ::new (static_cast<void*>(at)) U(static_cast<Value&&>(value));
-    }
-    template <class U>
-    bool operator==(const PoolAllocator<U>& /*other*/) const noexcept {
-        return true;
-    }
-};
-
-template <class T>
-using PooledVector = std::vector<T, PoolAllocator<T>>;
+using PooledVector = std::vector<T, UninitializedAllocator<T, take_pooled, give_pooled>>;
 
 }  // namespace easypbr
