@@ -399,18 +399,6 @@ TEST(PathSurfaces, OneLargeDiscLeavesShadowsOfOthers) {
     }
 }
 
-/// A line without light, from (0, 0, -1) to (length, 0, -1).
-Mesh line_of(float length) {
-    Array3f::Dense V(2, 3);
-    V << 0, 0, -1, length, 0, -1;
-    Array2i::Dense E(1, 2);
-    E << 0, 1;
-    MeshData data;
-    data.V = Array3f(V);
-    data.E = Array2i(E);
-    return Mesh(data);
-}
-
 // Only what casts shadows says how exact they are: the sheet 0.05 above the floor keeps its shadow, which the
 // light along (1, 0, -1) throws 0.05 beside it, by rays and in shadow maps, however far lines and vertices
 // without faces are. Pixels are 0.022 wide; the one at 0.28 lies in the shadow that ends at 0.3, and no
@@ -432,7 +420,7 @@ TEST(PathSurfaces, WhatCastsNothingLeavesShadowsAlone) {
             Scene scene;
             scene.show(floor, "floor");
             scene.show(sheet, "sheet");
-            if (line) scene.show(line_of(1e5f), "line");
+            if (line) scene.show(segment({0, 0, -1}, {1e5f, 0, -1}), "line");
             shine(scene, Vec3(1, 0, -1).normalized());
             app::Session session = path_session(scene, 32);
             session.settings().path.enabled = paths;
@@ -441,6 +429,46 @@ TEST(PathSurfaces, WhatCastsNothingLeavesShadowsAlone) {
             EXPECT_LT(image.at<float>(28, 16)[0], 0.01) << paths << line;
             EXPECT_GT(image.at<float>(31, 16)[0], 0.3) << paths << line;
         }
+}
+
+// Of a large scene small parts hold too: its places are rounded to 1e-7 of its size. The floor is 10,000
+// wide, and the sheet 0.1 above it keeps its shadow, as above.
+TEST(PathSurfaces, SheetsNearALargeFloorKeepTheirShadows) {
+    Material dark = matt(0);
+    dark.specular = 0;
+    Mesh sheet = facing_square(0.25f, dark);
+    sheet.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 0.1)));
+    Scene scene;
+    scene.show(facing_square(5000, matt(0.5f)), "floor");
+    scene.show(sheet, "sheet");
+    shine(scene, Vec3(1, 0, -1).normalized());
+    app::Session session = path_session(scene, 32);
+    look_from(session, Vec3d(0, 0, 4), 10);
+    const Image image = render_linear(session, 4);
+    // At 0.306, where the shadow ends at 0.35, and at -0.3, which is open.
+    EXPECT_LT(image.at<float>(29, 16)[0], 0.01);
+    EXPECT_GT(image.at<float>(2, 16)[0], 0.3);
+}
+
+// A room of 2 units in a world of 40,000 lets no sky in, however it is lit. Seen from within, it has no
+// light.
+TEST(PathSurfaces, ASmallRoomInALargeSceneIsDark) {
+    Mesh room = make_box(Vec3(2, 2, 2)), floor = facing_square(20'000, matt(0.5f));
+    room.set_material(matt(0.8f));
+    floor.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, -1.2)));
+    Scene scene;
+    scene.show(room, "room");
+    scene.show(floor, "floor");
+    scene.set_environment(constant_environment(1));
+    for (const bool paths : {true, false}) {
+        app::Session session = path_session(scene, 32);
+        Settings& s = session.settings();
+        s.environment.enabled = s.ssao.enabled = s.rays.enabled = true;
+        s.path.enabled = paths;
+        s.camera.near = 0.01;
+        look_from(session, Vec3d(-0.6, 0.3, 0.2), 90);
+        EXPECT_EQ(mean_of(render_linear(session, 16)), 0) << paths;
+    }
 }
 
 }  // namespace

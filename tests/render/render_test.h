@@ -51,6 +51,18 @@ inline Mesh facing_square(float half = 1, const Material& material = {}) {
     return mesh;
 }
 
+/// A line from a to b.
+inline Mesh segment(const Vec3& a, const Vec3& b) {
+    Array3f::Dense V(2, 3);
+    V << a.transpose(), b.transpose();
+    Array2i::Dense E(1, 2);
+    E << 0, 1;
+    MeshData data;
+    data.V = Array3f(V);
+    data.E = Array2i(E);
+    return Mesh(data);
+}
+
 inline void look_from(app::Session& session, const Vec3d& position, float fov_y_deg = 30) {
     session.settings().camera.position = position;
     session.settings().camera.target = Vec3d(0, 0, 0);

@@ -4,24 +4,14 @@
 
 #include <cstdint>
 #include <limits>
-#include <string>
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/mesh.h"
+#include "scene/refusal.h"
 
 namespace easypbr::array_test {
 namespace {
-
-template <class Job>
-std::string refusal(Job&& job) {
-    try {
-        job();
-    } catch (const ArgumentError& error) {
-        return error.what();
-    }
-    return "taken";
-}
 
 /// Rows of 0, 1, 2, ...
 Eigen::MatrixXd counted(int rows, int cols) {

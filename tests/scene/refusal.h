@@ -1,0 +1,21 @@
+// The message with which something is refused.
+#pragma once
+
+#include <string>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr {
+
+/// "taken" where the job throws no ArgumentError.
+template <class Job>
+std::string refusal(Job&& job) {
+    try {
+        job();
+    } catch (const ArgumentError& error) {
+        return error.what();
+    }
+    return "taken";
+}
+
+}  // namespace easypbr
