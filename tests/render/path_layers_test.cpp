@@ -77,7 +77,7 @@ TEST(PathLayers, SkyBesideAWall) {
 }
 
 // Surfaces that reflect all of an even sky disappear in it, however much they cover: four layers around an
-// opaque ball. 0.005: roundings of the table of directional albedos.
+// opaque ball. 0.005: roundings of the table of directional albedos, and the noise of 256 samples.
 TEST(PathLayers, WhiteFurnace) {
     for (const float clearcoat : {0.0f, 1.0f}) {
         Scene scene;
@@ -88,7 +88,7 @@ TEST(PathLayers, WhiteFurnace) {
         show_ball(scene, shell, 1, "outer");
         app::Session session = session_under_sky(scene, 32);
         look_from(session, Vec3d(0, 0, 5), 20);
-        EXPECT_NEAR(mean_of_middle(render_linear(session, 64)), 1, 0.005) << clearcoat;
+        EXPECT_NEAR(mean_of_middle(render_linear(session, 256)), 1, 0.005) << clearcoat;
     }
 }
 

@@ -313,7 +313,7 @@ std::vector<PathTracer::Hit> PathPass::hits_of(const Pixels& pixels, Block& exte
     extended.find(pixels, places, surfaces);
     for (size_t i = 0; i < extended.count; ++i) {
         const RayScene::Place at = places.at(i);
-        const auto hit = pixels.scene.hit_at(at.position, at.view, at.footprint, pixels.starts.seen);
+        const auto hit = pixels.scene.hit_at(at, pixels.starts.seen);
         if (!hit) {
             others.add(extended, i);
             continue;

@@ -19,8 +19,7 @@ namespace {
 
 /// From this surface on paths end at random (Russian roulette).
 constexpr uint32_t first_roulette = 3;
-/// Rays to a place on an emissive surface end before it by this part of their length, and of the scene's
-/// radius.
+/// Rays to a place on an emissive surface end before it by this part of their length, and by its rounding.
 constexpr float before_emitter = 1e-4f;
 /// Neither the sky nor emissive surfaces get less of the directions of next-event estimation, where there are
 /// both.
@@ -193,7 +192,8 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scatt
         const Vec3 direction = chosen.direction.at(i);
         const float index2 = squared_index_towards(*scene_, batch, path, direction);
         to.set_direction(path, direction, chosen.radiance.at(i) / index2, emitter_part_ * chosen.density[i]);
-        to.distance[path] = chosen.distance[i] * (1 - before_emitter) - before_emitter;
+        const float rounding = RayScene::rounding(batch.position.at(path).norm() + chosen.distance[i]);
+        to.distance[path] = chosen.distance[i] * (1 - before_emitter) - rounding;
     }
 }
 
@@ -413,7 +413,7 @@ size_t add_path(const RayScene& scene, const PathTracer::Hit& hit, const HitSurf
     to.normal.set(at, surfaces.normal.at(i));
     to.face.set(at, surfaces.face.at(i));
     to.view.set(at, -hit.direction);
-    to.reach[at] = scene.reach(hit.hit.on());
+    to.reach[at] = scene.reach(hit.hit);
     to.on[at] = hit.hit.on();
     to.albedo.set(at, surfaces.albedo.at(i));
     to.parameters.set(at, surfaces.parameters.at(i));

@@ -171,6 +171,8 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
     const int diffuse = std::max(least_rays, (wanted + frame.sample_count - 1) / frame.sample_count),
               mirrored = std::clamp(diffuse / 4, 1, most_mirrored);
     const Vec3d eye = frame.camera.position() - scene.centre();
+    // At a distance of 1; of an orthographic camera at any.
+    const double pixel_width = 2.0 / frame.size.x() / frame.clip_from_view(0, 0) / scene.unit();
     // Layers of transparent surfaces come and go from frame to frame.
     const bool keeps = !targets.from_behind;
     if (keeps && (frame.sample_index == 0 || visible_.size() != size_t(frame.size.prod())))
@@ -195,9 +197,11 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
             oct_decode(Vec2(pixels.normal[from * 2], pixels.normal[from * 2 + 1]) / 32767.5f - Vec2(1, 1));
         seen.view = (pixels.world_from_view * towards).cast<float>();
         const Vec3 place = ((pixels.world_from_view * position + eye) / scene.unit()).cast<float>();
-        const RayScene::Seen found = scene.seen_at({place, seen.normal, seen.view});
+        const double footprint = pixel_width * (frame.orthographic() ? 1 : -position.z());
+        const RayScene::Seen found = scene.seen_at({place, seen.normal, seen.view, float(footprint)});
+        seen.normal = found.normal;
         seen.face = found.face;
-        seen.from = RayScene::off_surface(place, seen.face, seen.face * found.reach);
+        seen.from = RayScene::off_surface(found.position, seen.face, seen.face * found.reach);
         const float roughness = float(material[1]) / 255;
         seen.alpha = roughness * roughness;
         const Vec2d pixel = (frame.origin + Vec2i(x, y)).cast<double>();

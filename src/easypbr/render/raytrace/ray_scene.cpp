@@ -4,13 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
-#include "easypbr/core/parallel.h"
-#include "easypbr/gpu/facing.h"
-#include "easypbr/render/raytrace/embree_scene.h"
-#include "easypbr/render/raytrace/ray_callbacks.h"
+#include "easypbr/render/raytrace/caster_tree.h"
 #include "easypbr/render/raytrace/ray_packet.h"
 #include "easypbr/render/raytrace/smooth_surface.h"
 
@@ -26,149 +22,7 @@ Vec3 towards_start(const Vec3& normal, const Vec3& direction) {
     return normal.normalized() * (normal.dot(direction) > 0 ? -1.0f : 1.0f);
 }
 
-/// What a place that comes from a pixel may be off by.
-float rounding_at(const Vec3& place) {
-    return 1e-4f * std::max(1.0f, place.norm());
-}
-
 }  // namespace
-
-struct RayScene::Scene final : RayGeometry {
-    Scene(const Vec3d& centre, double unit_)
-        : world_scale(1 / unit_), from_world(Eigen::Scaling(1 / unit_) * Eigen::Translation3d(-centre)) {}
-
-    Eigen::Affine3d placed(const DrawItem& item) const {
-        return Eigen::Affine3d(from_world * item.object->T_world_mesh);
-    }
-
-    void attach(const embree::Geometry& geometry, RayElement given) {
-        RayElement& element = *elements.emplace_back(std::make_unique<RayElement>(std::move(given)));
-        const DrawItem& item = *element.item;
-        element.unit = float(1 / world_scale);
-        element.world_from_normals = item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
-        if (element.faces > 0 && item.material.transmits()) set_winding(element);
-        rtcSetGeometryUserData(geometry.get(), &element);
-        calls_back |= is_filtered(item) || element.gaussians;
-        if (is_filtered(item) && !element.gaussians) {
-            rtcSetGeometryIntersectFilterFunction(geometry.get(), filter);
-            rtcSetGeometryOccludedFilterFunction(geometry.get(), filter);
-        }
-        tree.attach(geometry, unsigned(elements.size() - 1));
-    }
-
-    /// Of faces that light passes.
-    void set_winding(RayElement& element) {
-        const DrawItem& item = *element.item;
-        const auto [found, is_new] = windings.try_emplace(item.object, gpu::Winding::unknown);
-        if (is_new) found->second = gpu::winding_of(item.mesh().V, item.mesh().F);
-        const bool is_mirrored = item.object->T_world_mesh.linear().determinant() < 0;
-        element.is_closed = found->second == gpu::Winding::outward || found->second == gpu::Winding::inward;
-        element.is_open = found->second == gpu::Winding::open;
-        element.outwards = (found->second == gpu::Winding::inward) != is_mirrored ? -1.0f : 1.0f;
-    }
-
-    /// Of the parts of an object the same.
-    const std::vector<Vec3>& vertices_of(const DrawItem& item, const Eigen::Affine3d& T) {
-        std::vector<Vec3>& V = vertices[item.object];
-        if (!V.empty()) return V;
-        const MeshData& mesh = item.mesh();
-        V.resize(size_t(mesh.V.rows()) + 1);  // Embree reads whole vectors of four.
-        parallel_for(size_t(mesh.V.rows()), 1 << 14, [&](size_t i) {
-            V[i] = (T * Vec3d(mesh.V.row(Eigen::Index(i)).transpose().cast<double>())).cast<float>();
-        });
-        return V;
-    }
-
-    void add_faces(const DrawItem& item) override {
-        const MeshData& mesh = item.mesh();
-        const embree::Geometry geometry = tree.make(RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto& V = vertices_of(item, placed(item));
-        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, V.data(), 0,
-                                   sizeof(Vec3), size_t(mesh.V.rows()));
-        const auto F = tree.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                            size_t(item.part.face_count));
-        for (size_t i = 0; i < F.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                F[i][size_t(c)] = uint32_t(mesh.F(item.part.first_face + Eigen::Index(i), c));
-        attach(geometry, {&item, item.part.first_face, 1, int(F.size()), &V});
-    }
-
-    void add_discs(const DrawItem& item, double world_radius) override {
-        const MeshData& mesh = item.mesh();
-        const Eigen::Affine3d T = placed(item);
-        const auto radius = float(world_radius * world_scale);
-        const bool oriented = !mesh.N.empty();
-        const embree::Geometry geometry =
-            tree.make(oriented ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_DISC_POINT);
-        const auto V = tree.buffer<std::array<float, 4>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                                         size_t(mesh.V.rows()));
-        for (size_t i = 0; i < V.size(); ++i) {
-            const Vec3 p = (T * Vec3d(mesh.V.row(Eigen::Index(i)).transpose().cast<double>())).cast<float>();
-            V[i] = {p.x(), p.y(), p.z(), radius};
-        }
-        if (oriented) {
-            const auto N = tree.buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_NORMAL,
-                                                             RTC_FORMAT_FLOAT3, size_t(mesh.V.rows()));
-            const Mat3 normal_matrix = T.linear().inverse().transpose().cast<float>();
-            for (size_t i = 0; i < N.size(); ++i) {
-                const Vec3 n = (normal_matrix * mesh.N.row(Eigen::Index(i)).transpose()).normalized();
-                N[i] = {n.x(), n.y(), n.z()};
-            }
-        }
-        attach(geometry, {&item});
-    }
-
-    void add_polygons(const DrawItem& item, int corners,
-                      const std::function<void(Eigen::Index, std::span<Vec3d>)>& polygon) override {
-        const Eigen::Affine3d T = placed(item);
-        const auto count = size_t(item.mesh().V.rows()), n = size_t(corners), triangles = n - 2;
-        const embree::Geometry geometry = tree.make(RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto V =
-            tree.buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, count * n);
-        const auto F = tree.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                            count * triangles);
-        RayElement element{&item, 0, int(triangles)};
-        element.reaches.resize(count);
-        parallel_for(count, 1 << 10, [&](size_t i) {
-            std::array<Vec3d, size_t(most_corners)> places;
-            polygon(Eigen::Index(i), std::span(places.data(), n));
-            const Vec3d vertex = item.mesh().V.row(Eigen::Index(i)).transpose().cast<double>();
-            for (size_t c = 0; c < n; ++c) {
-                const Vec3 p = (T * places[c]).cast<float>();
-                V[i * n + c] = {p.x(), p.y(), p.z()};
-                const auto reach = float((T.linear() * (places[c] - vertex)).norm());
-                element.reaches[i] = std::max(element.reaches[i], reach);
-            }
-            const auto first = uint32_t(i * n);
-            for (uint32_t c = 0; c < triangles; ++c)
-                F[i * triangles + c] = {first, first + c + 1, first + c + 2};
-        });
-        attach(geometry, std::move(element));
-    }
-
-    void add_gaussians(const DrawItem& item,
-                       const std::function<RayGaussian(Eigen::Index)>& gaussian) override {
-        const Eigen::Affine3d T = placed(item);
-        const auto count = size_t(item.mesh().V.rows());
-        RayGaussians& set = *gaussians.emplace_back(std::make_unique<RayGaussians>(count));
-        parallel_for(count, 1 << 12, [&](size_t i) { set.set(i, gaussian(Eigen::Index(i)), T); });
-        const embree::Geometry geometry = tree.make(RTC_GEOMETRY_TYPE_USER);
-        tree.set_own(geometry, {unsigned(count), bound_gaussian, meet_gaussian, occlude_by_gaussian});
-        attach(geometry, {.item = &item, .gaussians = &set});
-    }
-
-    double world_scale;
-    Eigen::Affine3d from_world;
-    embree::Scene tree;
-    bool calls_back = false;  ///< some primitive does, for each ray alone
-    std::vector<std::unique_ptr<RayElement>> elements;
-    std::vector<std::unique_ptr<RayGaussians>> gaussians;
-    std::vector<Primitive*> kinds;                      ///< of the elements
-    std::vector<float> reaches;                         ///< likewise
-    std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
-    std::map<const SceneSnapshot::Object*, std::vector<Vec3>> vertices;
-    std::map<const SceneSnapshot::Object*, gpu::Winding> windings;  ///< of those that light passes
-};
 
 RayScene::RayScene() = default;
 RayScene::~RayScene() = default;
@@ -201,7 +55,8 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     centre_ = bounds.center();
     unit_ = bounds.diagonal().norm() / 2;
     place_ground();
-    auto made = std::make_unique<Scene>(centre_, unit_);  // kept once all is there: it can be interrupted
+    auto made =
+        std::make_unique<CasterTree>(centre_, unit_);  // kept once all is there: it can be interrupted
     for (const auto& each : items) {
         const auto& [kind, item] = each;
         const float reach = reach_of(each);
@@ -251,7 +106,7 @@ float RayScene::reach_beside(const Place& place) const {
     float nearest = reach_, found = reach_;
     for (const Vec3& way : {place.view, Vec3(-place.view)}) {
         const auto hit = first_hit({place.position, way, nearest}, Transmissive::layers, false);
-        if (!hit || !(hit->distance <= reach(hit->on()) + rounding_at(place.position))) continue;
+        if (!hit || !(hit->distance <= reach(hit->on()) + place.rounding())) continue;
         nearest = hit->distance;
         found = reach(hit->on());
     }
@@ -385,14 +240,9 @@ std::optional<RayHit> RayScene::first_hit(const RaySegment& ray, Transmissive tr
 
 namespace {
 
-/// Before a place, from where it is looked for.
-float start_before(const RayScene::Place& place) {
-    return std::max(rounding_at(place.position), place.footprint);
-}
-
-RaySegment ray_to(const RayScene::Place& place) {
-    const float near = start_before(place);
-    return {place.position + near * place.view, -place.view, near + rounding_at(place.position)};
+/// To a place from where it is looked for.
+RaySegment ray_to(const RayScene::Place& place, float before) {
+    return {place.position + before * place.view, -place.view, before + place.rounding()};
 }
 
 }  // namespace
@@ -401,21 +251,19 @@ RayScene::Seen RayScene::seen_by(const Place& place, const RaySegment& ray, floa
                                  const SurfacePlace& on) const {
     const Vec3 position = ray.from + ray.direction * distance;
     if (has_normal(on, face, place.normal)) return {position, face, place.normal, reach(on), on};
-    const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
+    const bool stands_before = distance < place.before() - rounding(place.position.norm());
     return stands_before ? Seen{position, face, face, reach(on), {}} : nothing_at(place);
 }
 
 RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {
     if (transmissive == Transmissive::layers && place.footprint > 0) {
         // Within the footprint there may be other layers of the same pixel: the place's own counts.
-        Place exact = place;
-        exact.footprint = 0;
-        const RaySegment ray = ray_to(exact);
+        const RaySegment ray = ray_to(place, place.rounding());
         const auto hit = first_hit(ray, transmissive, false);
         if (hit && has_normal(hit->on(), hit->normal, place.normal))
-            return seen_by(exact, ray, hit->distance, hit->normal, hit->on());
+            return seen_by(place, ray, hit->distance, hit->normal, hit->on());
     }
-    const RaySegment ray = ray_to(place);
+    const RaySegment ray = ray_to(place, place.before());
     const auto hit = first_hit(ray, transmissive, false);
     return hit ? seen_by(place, ray, hit->distance, hit->normal, hit->on()) : nothing_at(place);
 }
@@ -436,7 +284,8 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
         std::array<RaySegment, packet_size> segments;
         alignas(64) RTCRayHit16 rays;
         for (size_t i = 0; i < packet_size; ++i) {
-            segments[i] = ray_to(places.at(first + std::min(i, count - 1)));
+            const Place place = places.at(first + std::min(i, count - 1));
+            segments[i] = ray_to(place, place.before());
             set_ray(rays.ray, i, segments[i]);
             rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         }
@@ -459,16 +308,15 @@ void RayScene::see(Places& places, Transmissive transmissive) const {
     });
 }
 
-std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint,
-                                       Transmissive transmissive) const {
-    const float rounding = rounding_at(place), near = std::max(rounding, footprint);
+std::optional<RayHit> RayScene::hit_at(const Place& place, Transmissive transmissive) const {
     if (transmissive == Transmissive::layers) {
-        auto own = first_hit({place + rounding * view, -view, 2 * rounding}, transmissive, false);
+        auto own = first_hit(ray_to(place, place.rounding()), transmissive, false);
         if (own && own->surface >= 0) return own;
     }
-    auto hit = first_hit({place + near * view, -view, endless}, transmissive, false);
+    const float before = place.before();
+    auto hit = first_hit({place.position + before * place.view, -place.view, endless}, transmissive, false);
     // At a silhouette the surface may go on behind the place, by more than a pixel.
-    if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
+    if (!hit || hit->surface < 0 || hit->distance > 16 * before) return std::nullopt;
     return hit;
 }
 

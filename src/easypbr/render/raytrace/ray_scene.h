@@ -14,6 +14,8 @@
 
 namespace easypbr::render {
 
+struct CasterTree;
+
 /// The ground under the casters, seen from above (GroundPass); world space.
 struct RayGround {
     Vec3d up{0, 1, 0};
@@ -107,6 +109,10 @@ class RayScene {
     /// How far the element of a lit surface reaches around its vertex, so that rays that leave it start
     /// beyond its neighbours, which overlap it; 0 of faces and of the ground.
     float reach(const SurfacePlace& on) const;
+    /// The same of what a ray has met, and what a ray of its length ends beside the surface by.
+    float reach(const RayHit& hit) const {
+        return reach(hit.on()) + std::max(0.0f, rounding(hit.distance) - rounding(2));
+    }
 
     /// Holds all casters; RayScene's frame. Its radius is 0 where there are none.
     struct Ball {
@@ -122,15 +128,16 @@ class RayScene {
     };
     const Ball& ball() const { return ball_; }
 
-    /// What a place is off by at most that far from the scene's centre.
-    static float rounding(float distance) { return std::max(1.0f, distance) * 2e-5f; }
+    /// What a place on a surface that a ray has met is off by at most, that far from the scene's centre: its
+    /// coordinates, those of the ray and of the element are of 24 bits.
+    static float rounding(float distance) { return std::max(1.0f, distance) * 2e-6f; }
     /// Where rays start that leave a place of a surface: beyond its roundings along `away`, of length 1 or 2,
     /// and beyond `reach`.
     static Vec3 off_surface(const Vec3& at, const Vec3& away, const Vec3& reach = Vec3::Zero());
 
     /// The same of what a ray has met, along a unit normal.
     Vec3 start_at(const RayHit& hit, const Vec3& normal) const {
-        return off_surface(hit.position, normal, normal * reach(hit.on()));
+        return off_surface(hit.position, normal, normal * reach(hit));
     }
 
     const std::optional<RayGround>& ground() const { return ground_; }
@@ -151,15 +158,23 @@ class RayScene {
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;
-        Vec3 face;        ///< normal of the element itself: the interpolated one lies above it or below
-        Vec3 normal;      ///< the interpolated one, but for a surface that stands before the place
-        float reach = 0;  ///< of the element; where it is not found, that of the nearest one along the view
+        Vec3 face;    ///< normal of the element itself: the interpolated one lies above it or below
+        Vec3 normal;  ///< the interpolated one, but for a surface that stands before the place
+        /// Of the element; where none is found, of the nearest one along the view, and what the place may be
+        /// off by at least.
+        float reach = 0;
         SurfacePlace on;  ///< -1 where the normal is not interpolated
     };
     /// A pixel's surface as the rasteriser has it.
     struct Place {
         Vec3 position, normal, view;  ///< view: unit, towards the viewer
         float footprint = 0;          ///< width of the pixel there
+
+        /// What the position may be off by: the rasteriser rounds vertices to 1/256 of a pixel, which is 16
+        /// times as much along the view where the surface is that steep.
+        float rounding() const { return std::max(RayScene::rounding(position.norm()), footprint / 16); }
+        /// How far before it a face may stand that is seen in its stead.
+        float before() const { return std::max(rounding(), footprint); }
     };
     /// What is seen at a place along its view. The rasteriser rounds vertices to a
     /// part of a pixel: a place that lies beyond an adjacent face by less than its footprint moves onto that
@@ -188,9 +203,8 @@ class RayScene {
     };
     /// The same of many places: puts what is seen there in their stead. Of neighbours in a part of the time.
     void see(Places& places, Transmissive transmissive) const;
-    /// The surface at a place that is seen along `view`; none where its edges are rounded away.
-    std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint,
-                                 Transmissive transmissive) const;
+    /// The surface at a place that is seen along its view; none where its edges are rounded away.
+    std::optional<RayHit> hit_at(const Place& place, Transmissive transmissive) const;
     /// Whether any caster lies nearer than `distance` (RayScene::unit()). The ground is none.
     bool blocked(const Vec3& from, const Vec3& direction, float distance,
                  Transmissive transmissive = Transmissive::passed) const;
@@ -204,14 +218,14 @@ class RayScene {
     static constexpr float passes_all = 2;
 
   private:
-    struct Scene;
     /// `by_chance`: with Gaussians, and a ground that fades, which stop a part of the rays.
     std::optional<RayHit> first_hit(const RaySegment& ray, Transmissive transmissive, bool by_chance) const;
     float ground_distance(const Vec3& from, const Vec3& direction, bool fades) const;
     void place_ground();
     /// What is seen where no surface is found.
     Seen nothing_at(const Place& place) const {
-        return {place.position, place.normal, place.normal, reach_beside(place), {}};
+        return {
+            place.position, place.normal, place.normal, std::max(reach_beside(place), place.rounding()), {}};
     }
     /// The reach of the nearest element along the view that reaches as far as the place: between elements
     /// that overlap a pixel shows their mean. The largest of all surfaces where there is none.
@@ -226,7 +240,7 @@ class RayScene {
     bool has_normal(const SurfacePlace& on, const Vec3& face, const Vec3& normal) const;
     SurfacePlace place_on(unsigned geometry, unsigned primitive, float u, float v) const;
 
-    std::unique_ptr<Scene> scene_;
+    std::unique_ptr<CasterTree> scene_;
     std::optional<RayGround> ground_;
     /// The ground in RayScene's frame.
     struct Plane {
