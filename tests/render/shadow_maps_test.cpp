@@ -75,7 +75,7 @@ TEST_F(ShadowCache, ALightDrawsItsOwn) {
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.intensity *= 2; }); }), 0u);
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.color = Vec3(1, 0, 0); }); }),
               0u);
-    EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.radius = 0.1f; }); }), 0u);
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.radius = 0.28f; }); }), 0u);
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.casts_shadows = false; }); }),
               0u);
 }

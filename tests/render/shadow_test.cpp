@@ -18,6 +18,8 @@ TEST(Shadow, ThreeByThreeCountsNinths) {
     constexpr float texel = 2.0f / 58;
     Scene scene;
     scene.show(rectangle(-1, -1, 1, 1, 0), "floor");
+    scene.show(rectangle(-0.1f, -0.1f, 0.1f, 0.1f, -0.2f),
+               "below");  // so that the map shows all of the floor
     scene.show(rectangle(-10 * texel, -8 * texel, 12 * texel, 6 * texel, 0.5f), "caster");
     scene.set_light("sun", directional(Vec3(0, 0, -1)));
     app::Session session = shadow_session(scene, ShadowMode::pcf);

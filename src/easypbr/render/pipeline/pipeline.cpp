@@ -17,8 +17,9 @@ bool is_layered(const DrawItem& item) {
 /// The ground, and what is drawn larger than it is, reach beyond the bounds of what casts.
 ShadowMaps::Receivers receivers_of(const DrawList& list, const FrameContents& contents) {
     if (!contents.ground && !list.has(&DrawItem::receives_shadows)) return ShadowMaps::Receivers::none;
-    const bool beyond = contents.ground || list.has(&DrawItem::reaches_beyond);
-    return beyond ? ShadowMaps::Receivers::anywhere : ShadowMaps::Receivers::within;
+    if (contents.ground) return ShadowMaps::Receivers::on_ground;
+    return list.has(&DrawItem::reaches_beyond) ? ShadowMaps::Receivers::around
+                                               : ShadowMaps::Receivers::within;
 }
 
 /// What a frame of native surfaces needs the driver for where it is not lit natively.

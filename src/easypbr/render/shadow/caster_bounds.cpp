@@ -1,6 +1,7 @@
 #include "easypbr/render/shadow/caster_bounds.h"
 
 #include <algorithm>
+#include <map>
 
 namespace easypbr::render {
 namespace {
@@ -51,26 +52,51 @@ std::shared_ptr<const MeshData> CasterBounds::used(const DrawItem& item, DrawMod
     });
 }
 
+CasterExtent CasterBounds::extent_of(const DrawItem& item, DrawMode kind, double reach) {
+    SceneSnapshot one;
+    one.objects = {*item.object};
+    one.objects.front().mesh = used(item, kind);
+    CasterExtent extent{one.bounds(), reach, {}};
+    if (kind != DrawMode::mesh || item.data || extent.box.isEmpty()) return extent;
+    const MeshData& mesh = *one.objects.front().mesh;
+    const Eigen::Affine3d& T = item.object->T_world_mesh;
+    const Mat3d normal_matrix = T.linear().inverse().transpose();
+    for (const FacePlane& plane :
+         planes_.get({mesh.V.revision(), mesh.F.revision()}, [&] { return convex_faces(mesh.V, mesh.F); })) {
+        const Vec3d normal = (normal_matrix * plane.normal).normalized();
+        if (normal.allFinite())
+            extent.planes.push_back({normal, normal.dot(T * (plane.normal * plane.offset))});
+    }
+    return extent;
+}
+
 Box3d CasterBounds::of(const DrawList& casters, const Primitives& primitives) {
     std::vector<Caster> now;
+    objects_.clear();
     for_each_caster(casters, primitives, [&](const DrawItem& item, DrawMode kind, double reach) {
         const MeshData& mesh = *mesh_of(item);
         now.push_back(
             {mesh.V.revision(), mesh.F.revision(), kind, reach, item.object->T_world_mesh.matrix()});
+        objects_.push_back(item.object);
     });
-    if (now == casters_) return bounds_;
+    if (now == casters_ && extents_.size() == now.size()) return bounds_;
     Box3d bounds;
+    casters_.clear();  // until all is there: it can be interrupted
+    extents_.clear();
     for_each_caster(casters, primitives, [&](const DrawItem& item, DrawMode kind, double reach) {
-        SceneSnapshot one;
-        one.objects = {*item.object};
-        one.objects.front().mesh = used(item, kind);
-        const Box3d box = one.bounds();
+        const Box3d& box = extents_.emplace_back(extent_of(item, kind, reach)).box;
         if (box.isEmpty()) return;
         const Vec3d margin = Vec3d::Constant(reach);
         bounds.extend(Box3d(box.min() - margin, box.max() + margin));
     });
     unused_.evict_unused();
     meshes_.evict_unused();
+    planes_.evict_unused();
+    // What an object draws besides its faces would be left out with them.
+    std::map<const SceneSnapshot::Object*, int> counts;
+    for (const auto* object : objects_) ++counts[object];
+    for (size_t i = 0; i < extents_.size(); ++i)
+        if (counts[objects_[i]] > 1) extents_[i].planes.clear();
     casters_ = std::move(now);
     return bounds_ = bounds;
 }

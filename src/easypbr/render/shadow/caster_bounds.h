@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/shadow/useful_casters.h"
 
 namespace easypbr::render {
 
@@ -18,6 +20,10 @@ class CasterBounds {
     /// Of the items of a list in world space, with what reaches beyond their vertices; of meshes by the
     /// vertices that faces have. Empty when there are none.
     Box3d of(const DrawList& casters, const Primitives& primitives);
+
+    /// The casters of the last list, and of which objects they are: these live as long as it.
+    std::span<const CasterExtent> extents() const { return extents_; }
+    const SceneSnapshot::Object* object(size_t caster) const { return objects_[caster]; }
 
   private:
     /// All that the bounds of an item depend on.
@@ -32,10 +38,15 @@ class CasterBounds {
 
     /// What is drawn of an item; of a mesh without the vertices that no face has.
     std::shared_ptr<const MeshData> used(const DrawItem& item, DrawMode kind);
+    CasterExtent extent_of(const DrawItem& item, DrawMode kind, double reach);
 
     using Vertices = std::vector<Eigen::Index>;
     std::vector<Caster> casters_;
     Box3d bounds_;  ///< of these
+    std::vector<CasterExtent> extents_;
+    std::vector<const SceneSnapshot::Object*> objects_;
+    RevisionCache<std::pair<uint64_t, uint64_t>, std::vector<FacePlane>>
+        planes_;  ///< of meshes, in their frames
     RevisionCache<std::pair<uint64_t, Eigen::Index>, Vertices>
         unused_;  ///< by the faces, and how many vertices
     RevisionCache<std::pair<uint64_t, uint64_t>, std::shared_ptr<const MeshData>> meshes_;

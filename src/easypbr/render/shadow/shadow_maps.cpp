@@ -32,6 +32,22 @@ int most_layers(int resolution, bool tinted) {
 /// the depth of a distant camera are rounded.
 constexpr double slack = 0.01;
 
+/// No less than the radius of the widest penumbrae of a light of this extent_of() within the bounds of all
+/// casters. Of the powers of two, so that maps stay while a light grows.
+double widest_penumbra(const ResolvedLight& light, double extent, const Box3d& all) {
+    const double diagonal = all.isEmpty() ? 0 : all.diagonal().norm();
+    double part = extent;
+    if (light.type != LightType::directional) {
+        const double nearest = all.isEmpty() ? 0 : std::sqrt(all.squaredExteriorDistance(light.position));
+        part = extent < nearest ? extent / nearest : 1;
+    }
+    return part > 0 ? diagonal * std::exp2(std::ceil(std::log2(part))) : 0;
+}
+
+std::optional<FacePlane> ground_of(const ResolvedSettings& resolved) {
+    return FacePlane{parse_up(resolved.settings.camera.up), double(resolved.settings.ground.height)};
+}
+
 /// Whether a light reaches a box at all: beyond its range it is zero.
 bool reaches(const ResolvedLight& light, const Box3d& box) {
     if (light.type == LightType::directional || is_area(light.type) || !(light.range > 0)) return true;
@@ -95,19 +111,22 @@ void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
 }
 
 ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Frame& frame,
-                                           const Box3d& bounds, Receivers receivers) {
+                                           Receivers receivers) const {
     const ShadowSettings& settings = frame.resolved->settings.shadows;
     Request request;
     request.light = &light;
     if (!settings.enabled || !light.casts_shadows || receivers == Receivers::none) return request;
-    const Vec3d margin = Vec3d::Constant(slack * (bounds.isEmpty() ? 0 : bounds.diagonal().norm()));
-    const Box3d lit(bounds.min() - margin, bounds.max() + margin);
-    const bool bounded = receivers == Receivers::within && !bounds.isEmpty();
+    const Vec3d margin = Vec3d::Constant(slack * (bounds_.isEmpty() ? 0 : bounds_.diagonal().norm()));
+    const Box3d lit(bounds_.min() - margin, bounds_.max() + margin);
+    const bool bounded = receivers == Receivers::within && !bounds_.isEmpty();
     if (bounded && !reaches(light, lit)) return request;
     const double extent = settings.mode == ShadowMode::soft ? extent_of(light) : 0;
     const int samples = extent > 0 ? frame.sample_count : 1;
     const ResolvedLight sampled = sampled_light(light, frame.sample_index, samples);
-    const auto projection = project_shadows(sampled, bounds, settings.resolution);
+    request.casters =
+        useful_casters(light, extent_.extents(), bounds_, widest_penumbra(light, extent, bounds_),
+                       receivers == Receivers::on_ground ? ground_of(*frame.resolved) : std::nullopt);
+    const auto projection = project_shadows(sampled, request.casters.bounds, settings.resolution);
     if (!projection) return request;
     request.shadowed = true;
     request.projection = *projection;
@@ -155,7 +174,7 @@ void ShadowMaps::begin(const Frame& frame, const DrawList& casters, Receivers re
     next_ = 0;
     wanted_layers_ = 0;
     for (const ResolvedLight& light : frame.resolved->lights) {
-        requests_.push_back(request_of(light, frame, bounds, receivers));
+        requests_.push_back(request_of(light, frame, receivers));
         if (requests_.back().shadowed) wanted_layers_ += requests_.back().projection.count;
     }
     const bool any = std::ranges::any_of(requests_, &Request::shadowed);
@@ -219,8 +238,9 @@ const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
     Entry& entry = found->second;
     entry.last_frame = frame_;
     entry.last_block = block_;
-    if (entry.casters != casters_generation_) entry.drawn = 0;
+    if (entry.casters != casters_generation_ || !(entry.shown == request.casters)) entry.drawn = 0;
     entry.casters = casters_generation_;
+    entry.shown = request.casters;
     draw(request, entry);
     return &entry;
 }
@@ -228,16 +248,19 @@ const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
 void ShadowMaps::draw(const Request& request, Entry& entry) {
     const unsigned missing = request.needed & ~entry.drawn;
     if (missing == 0) return;
+    std::vector<const SceneSnapshot::Object*> left_out;
+    for (const size_t caster : request.casters.left_out) left_out.push_back(extent_.object(caster));
+    const MapCasters casters{*list_, left_out};
     for (int i = 0; i < entry.layers; ++i) {
         if (!(missing >> i & 1)) continue;
         const ShadowView& view = request.projection.views[size_t(i)];
         const int layer = entry.first_layer + i;
         if (in_host_memory_) {
-            draw_in_host_memory(view, layer);
+            draw_in_host_memory(view, casters, layer);
             continue;
         }
-        pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);
-        if (tints_) pass_.draw_tints(view, *list_, tint_framebuffers_[size_t(layer)]);
+        pass_.draw(view, casters, maps_, layer, framebuffers_[size_t(layer)]);
+        if (tints_) pass_.draw_tints(view, casters, tint_framebuffers_[size_t(layer)]);
     }
     entry.drawn |= missing;
     ++drawn_;
@@ -248,13 +271,13 @@ std::span<float> ShadowMaps::host_layer(std::vector<float>& values, int layer, i
     return std::span(values).subspan(size_t(layer) * count, count);
 }
 
-void ShadowMaps::draw_in_host_memory(const ShadowView& view, int layer) {
-    pass_.draw(view, *list_, resolution_, host_layer(host_maps_, layer, 1));
+void ShadowMaps::draw_in_host_memory(const ShadowView& view, const MapCasters& casters, int layer) {
+    pass_.draw(view, casters, resolution_, host_layer(host_maps_, layer, 1));
     note_bounds(layer);
     if (host_absorption_.empty()) return;
     TintLayer tints(host_layer(host_absorption_, layer, 4), host_layer(host_moment_, layer, 4), resolution_,
                     no_shadow_depth);
-    pass_.draw_tints(view, *list_, tints);
+    pass_.draw_tints(view, casters, tints);
 }
 
 void ShadowMaps::note_bounds(int layer) {

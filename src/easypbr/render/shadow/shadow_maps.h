@@ -23,8 +23,8 @@ class ShadowMaps {
         : primitives_(primitives), pass_(primitives, transfers) {}
 
     /// Where surfaces are that receive shadows: nowhere for a bare cloud or labels in their own colours,
-    /// within the bounds of what casts, or beyond them too.
-    enum class Receivers { none, within, anywhere };
+    /// within the bounds of what casts, a little beyond them, or on the ground too.
+    enum class Receivers { none, within, around, on_ground };
 
     /// Takes note of a frame's lights and of what casts. Only maps that receivers need are drawn. `casters`
     /// must live until its last block.
@@ -62,15 +62,17 @@ class ShadowMaps {
     using LightKey = std::array<double, 9>;
     struct Entry {
         int first_layer = 0, layers = 0;
-        uint64_t casters = 0;     ///< generation of the casters that it shows
-        unsigned drawn = 0;       ///< its maps that are, as bits
-        uint64_t last_frame = 0;  ///< that asked for it
+        uint64_t casters = 0;      ///< generation of the casters that it shows
+        UsefulCasters shown = {};  ///< of these
+        unsigned drawn = 0;        ///< its maps that are, as bits
+        uint64_t last_frame = 0;   ///< that asked for it
         uint64_t last_block = 0;
     };
     struct Request {
         const ResolvedLight* light = nullptr;
         bool shadowed = false;
         LightKey key{};
+        UsefulCasters casters;
         ShadowProjection projection;
         unsigned needed = 0;  ///< maps, as bits
         double radius = 0;
@@ -101,8 +103,7 @@ class ShadowMaps {
     static Shaded shaded_by(const DrawItem& item);
     static Caster caster_of(const DrawItem& item);
     void note_casters(const DrawList& list, const Box3d& bounds);
-    static Request request_of(const ResolvedLight& light, const Frame& frame, const Box3d& bounds,
-                              Receivers receivers);
+    Request request_of(const ResolvedLight& light, const Frame& frame, Receivers receivers) const;
     /// Forgets all maps of another size; 0: no maps.
     void set_resolution(int resolution);
     /// The entry of a request, its maps drawn; null when there is no room beside the others of this block.
@@ -119,7 +120,7 @@ class ShadowMaps {
     /// To what all requests of the frame need, as far as there is memory.
     bool grow(int layers);
     void make_framebuffers();
-    void draw_in_host_memory(const ShadowView& view, int layer);
+    void draw_in_host_memory(const ShadowView& view, const MapCasters& casters, int layer);
     /// A layer of something in host memory, so many floats a texel.
     std::span<float> host_layer(std::vector<float>& values, int layer, int channels) const;
     /// Finds the bounds of the blocks of a layer, see native::Layers.

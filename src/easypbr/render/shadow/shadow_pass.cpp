@@ -10,21 +10,22 @@ namespace easypbr::render {
 namespace {
 
 /// The items of a kind that stop light, or those that weaken it.
-Casters casters_of(const DrawList& list, const Primitive& kind, bool tints) {
+Casters casters_of(const MapCasters& all, const Primitive& kind, bool tints) {
     Casters casters;
-    for (const DrawItem& item : list.of(kind.mode()))
-        if (item.casts_tint() == tints) casters.push_back(&item);
+    for (const DrawItem& item : all.list.of(kind.mode()))
+        if (item.casts_tint() == tints && std::ranges::find(all.left_out, item.object) == all.left_out.end())
+            casters.push_back(&item);
     return casters;
 }
 
 }  // namespace
 
-void ShadowPass::draw(const ShadowView& view, const DrawList& list, gl::Texture& maps, int layer,
+void ShadowPass::draw(const ShadowView& view, const MapCasters& all, gl::Texture& maps, int layer,
                       const gl::Framebuffer& framebuffer) {
     const int resolution = maps.width();
     const bool native = native_ && gl::Context::current().info().software;
     ShadowDepths depths(depths_, resolution);
-    const std::vector<Casters> left = rasterise(view, list, native, depths);
+    const std::vector<Casters> left = rasterise(view, all, native, depths);
     if (depths.empty()) {
         const float nothing[4] = {no_shadow_depth, 0, 0, 0};
         framebuffer.clear_color(0, nothing);
@@ -38,11 +39,11 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& list, gl::Texture&
     draw_rest(view, resolution, left);
 }
 
-std::vector<Casters> ShadowPass::rasterise(const ShadowView& view, const DrawList& list, bool native,
+std::vector<Casters> ShadowPass::rasterise(const ShadowView& view, const MapCasters& all, bool native,
                                            ShadowDepths& depths) {
     std::vector<Casters> left;
     for (const auto& kind : primitives_) {
-        left.push_back(casters_of(list, *kind, false));
+        left.push_back(casters_of(all, *kind, false));
         if (native && !left.back().empty()) kind->rasterise_shadows(view, left.back(), depths);
     }
     return left;
@@ -53,9 +54,9 @@ void ShadowPass::draw_rest(const ShadowView& view, int resolution, const std::ve
         if (!left[i].empty()) primitives_[i]->draw_shadows({view, resolution, false}, left[i]);
 }
 
-void ShadowPass::draw(const ShadowView& view, const DrawList& list, int resolution, std::span<float> layer) {
+void ShadowPass::draw(const ShadowView& view, const MapCasters& all, int resolution, std::span<float> layer) {
     ShadowDepths depths(depths_, resolution);
-    const std::vector<Casters> left = rasterise(view, list, true, depths);
+    const std::vector<Casters> left = rasterise(view, all, true, depths);
     parallel_chunks(layer.size(), size_t(1) << 16, [&](size_t begin, size_t end) {
         const std::span<float> part = layer.subspan(begin, end - begin);
         if (depths.empty())
@@ -76,20 +77,20 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& list, int resoluti
     transfers_.note_download(layer.size_bytes());
 }
 
-void ShadowPass::draw_tints(const ShadowView& view, const DrawList& list,
+void ShadowPass::draw_tints(const ShadowView& view, const MapCasters& all,
                             const gl::Framebuffer& framebuffer) {
     const float nothing[4] = {0, 0, 0, no_shadow_depth};
     framebuffer.clear_color(0, nothing);
     framebuffer.clear_color(1, nothing);
     framebuffer.bind();
     for (const auto& kind : primitives_)
-        if (const Casters casters = casters_of(list, *kind, true); !casters.empty())
+        if (const Casters casters = casters_of(all, *kind, true); !casters.empty())
             kind->draw_shadows({view, framebuffer.width(), true}, casters);
 }
 
-void ShadowPass::draw_tints(const ShadowView& view, const DrawList& list, TintLayer& layer) {
+void ShadowPass::draw_tints(const ShadowView& view, const MapCasters& all, TintLayer& layer) {
     for (const auto& kind : primitives_)
-        if (const Casters casters = casters_of(list, *kind, true); !casters.empty())
+        if (const Casters casters = casters_of(all, *kind, true); !casters.empty())
             kind->rasterise_tints(view, casters, layer);
 }
 

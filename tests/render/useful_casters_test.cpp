@@ -1,0 +1,180 @@
+// Floors are left out of shadow maps, and nothing else is.
+#include "easypbr/render/shadow/useful_casters.h"
+
+#include <vector>
+
+#include "shadow_test.h"
+
+namespace easypbr::render::useful_casters_test {
+namespace {
+
+std::vector<FacePlane> planes_of(const Mesh& mesh) {
+    return convex_faces(mesh.V(), mesh.F());
+}
+
+TEST(ConvexFaces, OfAFlatMeshAreBothItsSides) {
+    const auto of_square = planes_of(facing_square(3));
+    ASSERT_EQ(of_square.size(), 2u);
+    EXPECT_EQ(of_square[0].normal, Vec3d(0, 0, 1));
+    EXPECT_EQ(of_square[1].normal, Vec3d(0, 0, -1));
+    EXPECT_EQ(of_square[0].offset, 0);
+    EXPECT_EQ(planes_of(make_plane(2, 40)).size(), 2u);  // of 3200 faces
+}
+
+TEST(ConvexFaces, OfABoxAreSixInAnyWinding) {
+    Mesh box = make_box(Vec3(2, 4, 6));
+    for (const bool inward : {false, true}) {
+        if (inward) box.set_F(Array3i(Array3i::Dense(Array3i::Dense(box.F()).rowwise().reverse())));
+        const auto planes = planes_of(box);
+        ASSERT_EQ(planes.size(), 6u) << inward;
+        for (const FacePlane& plane : planes) {
+            const Vec3d half(1, 2, 3);
+            EXPECT_NEAR(plane.offset, plane.normal.cwiseAbs().dot(half), 1e-6) << inward;
+        }
+    }
+}
+
+// What is open, hollow or made of many faces may hide light from itself.
+TEST(ConvexFaces, OthersHaveNone) {
+    Mesh open = make_box();
+    open.set_F(Array3i(Array3i::Dense(Array3i::Dense(open.F()).topRows(10))));
+    EXPECT_TRUE(planes_of(open).empty());
+    EXPECT_TRUE(planes_of(make_sphere(1, 32)).empty());
+    Array3f::Dense V = make_box().V();
+    for (Eigen::Index i = 0; i < V.rows(); ++i)
+        if (V(i, 0) > 0 && V(i, 1) > 0 && V(i, 2) > 0) V.row(i).setConstant(-0.2f);  // a dent
+    EXPECT_TRUE(planes_of(Mesh(Array3f(V), make_box().F())).empty());
+    EXPECT_TRUE(convex_faces(Array3f(), Array3i()).empty());
+}
+
+CasterExtent extent_of(const Mesh& mesh) {
+    const Scene scene = [&] {
+        Scene one;
+        one.show(mesh, "mesh");
+        return one;
+    }();
+    return {scene.snapshot().bounds(), 0, planes_of(mesh)};
+}
+
+CasterExtent ball_at(const Vec3d& centre, double radius) {
+    const Vec3d half = Vec3d::Constant(radius);
+    return {Box3d(centre - half, centre + half), 0, {}};
+}
+
+Box3d bounds_of(const std::vector<CasterExtent>& casters) {
+    Box3d all;
+    for (const CasterExtent& caster : casters) all.extend(caster.box);
+    return all;
+}
+
+size_t left_out(const std::vector<CasterExtent>& casters, const ResolvedLight& light,
+                const std::optional<FacePlane>& ground = std::nullopt) {
+    return useful_casters(light, casters, bounds_of(casters), 0, ground).left_out.size();
+}
+
+ResolvedLight sun_along(const Vec3& direction) {
+    return ResolvedLight(directional(direction), 0);
+}
+
+ResolvedLight lamp_at(const Vec3& position, float radius = 0) {
+    return ResolvedLight(point(position, radius), radius);
+}
+
+const CasterExtent floor_of_20 = extent_of(facing_square(10));
+
+TEST(UsefulCasters, LeaveOutAFloor) {
+    const std::vector<CasterExtent> casters{floor_of_20, ball_at(Vec3d(1, 0, 1), 1)};
+    const UsefulCasters useful =
+        useful_casters(sun_along(Vec3(1, 0, -1)), casters, bounds_of(casters), 0, std::nullopt);
+    EXPECT_EQ(useful.left_out, std::vector<size_t>{0});
+    EXPECT_EQ(useful.bounds.min(), Vec3d(0, -1, 0));
+    EXPECT_EQ(useful.bounds.max(), Vec3d(2, 1, 2));
+    EXPECT_EQ(left_out(casters, lamp_at(Vec3(0, 0, 3), 0.5f)), 1u);
+}
+
+TEST(UsefulCasters, HaveRoomForPenumbrae) {
+    const std::vector<CasterExtent> casters{floor_of_20, ball_at(Vec3d(1, 0, 1), 1)};
+    const UsefulCasters useful =
+        useful_casters(sun_along(Vec3(0, 0, -1)), casters, bounds_of(casters), 0.6, std::nullopt);
+    // 0.6 / 0.15 is 4 of width, as far as there is anything.
+    EXPECT_EQ(useful.bounds.min(), Vec3d(-1, -2, 0));
+    EXPECT_EQ(useful.bounds.max(), Vec3d(3, 2, 2));
+}
+
+// From below, from behind the plane, or from both sides of it, the floor hides the light.
+TEST(UsefulCasters, KeepAFloorThatHidesTheLight) {
+    const std::vector<CasterExtent> casters{floor_of_20, ball_at(Vec3d(1, 0, 1), 1)};
+    EXPECT_EQ(left_out(casters, sun_along(Vec3(0, 0, 1))), 0u);
+    EXPECT_EQ(left_out(casters, sun_along(Vec3(1, 0, 0))), 0u);
+    EXPECT_EQ(left_out(casters, lamp_at(Vec3(0, 0, 0.3f), 0.5f)), 0u);
+    EXPECT_EQ(left_out(casters, lamp_at(Vec3(0, 0, -3))), 0u);
+}
+
+// A ball below it, a floor below it, and a plane that receives shadows below it or beside it.
+TEST(UsefulCasters, KeepAFloorAboveSomething) {
+    const CasterExtent ball = ball_at(Vec3d(1, 0, 1), 1);
+    const ResolvedLight sun = sun_along(Vec3(1, 0, -1));
+    EXPECT_EQ(left_out({floor_of_20, ball, ball_at(Vec3d(0, 0, -1), 0.5)}, sun), 0u);
+    CasterExtent lower = floor_of_20;
+    lower.box = Box3d(Vec3d(-40, -40, -0.1), Vec3d(40, 40, -0.1));
+    for (FacePlane& plane : lower.planes) plane.offset = -0.1 * plane.normal.z();
+    // The lower one alone.
+    EXPECT_EQ(left_out({floor_of_20, ball, lower}, sun), 1u);
+    EXPECT_EQ(left_out({floor_of_20, ball}, sun, FacePlane{Vec3d(0, 0, 1), -1e-3}), 1u);
+    EXPECT_EQ(left_out({floor_of_20, ball}, sun, FacePlane{Vec3d(0, 0, 1), -1}), 0u);
+    EXPECT_EQ(left_out({floor_of_20, ball}, sun, FacePlane{Vec3d(1, 0, 0), 0}), 0u);
+}
+
+// What stands on a floor is seldom placed to the last digit; a half of it below is another matter.
+TEST(UsefulCasters, MaySinkIn) {
+    const ResolvedLight sun = sun_along(Vec3(1, 0, -1));
+    EXPECT_EQ(left_out({floor_of_20, ball_at(Vec3d(1, 0, 0.99), 1)}, sun), 1u);
+    EXPECT_EQ(left_out({floor_of_20, ball_at(Vec3d(1, 0, 0), 1)}, sun), 0u);
+}
+
+// The walls of a room of boxes hide nothing from a lamp within; the sun they keep out.
+TEST(UsefulCasters, LeaveOutWallsAroundALamp) {
+    std::vector<CasterExtent> casters{ball_at(Vec3d::Zero(), 0.5)};
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0}) {
+            Vec3 size = Vec3::Constant(10);
+            size[axis] = 0.2f;
+            Mesh wall = make_box(size);
+            CasterExtent extent = extent_of(wall);
+            const Vec3d shift = 5.1 * side * Vec3d::Unit(axis);
+            extent.box.translate(shift);
+            for (FacePlane& plane : extent.planes) plane.offset += plane.normal.dot(shift);
+            casters.push_back(extent);
+        }
+    EXPECT_EQ(left_out(casters, lamp_at(Vec3(1, 2, 3))), 6u);
+    EXPECT_LT(left_out(casters, sun_along(Vec3(1, 2, -3))), 6u);
+    const UsefulCasters in_the_sun =
+        useful_casters(sun_along(Vec3(1, 2, -3)), casters, bounds_of(casters), 0, std::nullopt);
+    EXPECT_TRUE(in_the_sun.left_out.empty());
+}
+
+// A sheet 0.1 above a floor that is 4000 times as wide as its shadow keeps it: of the light along (1, 0, -1)
+// the part from 0.25 to 0.35 is seen. Pixels are 0.022 wide. So it does with a map of its own size.
+TEST(UsefulCasters, FloorsTakeNoTexels) {
+    Material matt;
+    matt.base_color = Vec3::Constant(0.5f);
+    matt.roughness = 1;
+    Mesh sheet = facing_square(0.25f, matt);
+    sheet.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 0.1)));
+    for (const bool native : {true, false}) {
+        Scene scene;
+        scene.show(facing_square(200, matt), "floor");
+        scene.show(sheet, "sheet");
+        scene.set_light("sun", directional(Vec3(1, 0, -1)));
+        app::Session session = plain_session(scene, 32);
+        session.allow_native_shading(native);
+        session.settings().shadows.enabled = true;
+        look_from(session, Vec3d(0, 0, 4), 10);
+        const Image image = render_linear(session);
+        EXPECT_LT(image.at<float>(29, 16)[0], 0.01) << native;
+        EXPECT_GT(image.at<float>(2, 16)[0], 0.1) << native;
+    }
+}
+
+}  // namespace
+}  // namespace easypbr::render::useful_casters_test
