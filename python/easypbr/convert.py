@@ -5,13 +5,14 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from . import _easypbr
 from ._easypbr import Mesh
 from .conversions import from_arrays, from_open3d, from_trimesh, from_vtk
+from .conversions.faces import Faces
 from .conversions.maker import Maker
 from .errors import ArgumentError
-from .tensors import as_numpy
+from .tensors import array_of, as_numpy, is_array
 
 ACCEPTED = (
     "a path, an easypbr.Mesh, points (n x 3, or n x 6 with colours), (V, F), a dict or a table of arrays, "
@@ -29,13 +30,14 @@ _CONVERSIONS = [
 
 
 def as_mesh(what: Any, strict: bool = False) -> Mesh:
-    """A Mesh of a path; a Mesh; points, n x 3 or with further columns as in a text file, n x 6 with colours, h x w x 3; (V, F); a
-    dict of arrays (V, F, C, ..., or points, vertices, faces, colors, ...); a table or a structured array with columns x, y and z;
-    an object of trimesh, Open3D, PyVista or VTK; or a list of these, whose meshes become children. Arrays may be any library's
-    with DLPack.
+    """A Mesh of a path; a Mesh; points, n x 3 or with further columns as in a text file, n x 6 with colours, h x w x 3; a tuple
+    (V, F); a dict of arrays (V, F, C, ..., or points, vertices, faces, colors, ...); a table or a structured array with
+    columns x, y and z; an object of trimesh, Open3D, PyVista or VTK; or a list of these, whose meshes become children. Arrays
+    may be any library's with DLPack, `__array__` or `__array_interface__`.
 
-    A Mesh is returned as it is, in a list a copy of it; arrays are copied once. Points without a finite position are left out with a warning, or
-    raise ArgumentError if `strict`, of a file FormatError. Raises ArgumentError for what cannot be drawn."""
+    A Mesh is returned as it is, in a list a copy of it; arrays are copied once. Points without a finite position are left out
+    with a warning, or raise ArgumentError if `strict`, of a file FormatError. Raises ArgumentError for what cannot be drawn,
+    and for a list of two arrays that may be clouds as well as the vertices and faces of one mesh."""
     return converted(what, strict)[0]
 
 
@@ -58,7 +60,7 @@ def _any_mesh(what: Any, make: Maker) -> Mesh:
     for recognises, convert in _CONVERSIONS:
         if recognises(what):
             return _checked(convert, what, make)
-    if _is_array(what):
+    if is_array(what):
         return from_arrays.of_points(what, make)
     raise ArgumentError(f"cannot show a {type(what).__module__}.{type(what).__qualname__}: expected {ACCEPTED}")
 
@@ -72,84 +74,89 @@ def _checked(convert: Callable[[Any, Maker], Mesh], what: Any, make: Maker) -> M
         raise ArgumentError(f"cannot show a {kind}, which has not the expected form: {error}") from error
 
 
-def _is_array(what: Any) -> bool:
-    return isinstance(what, np.ndarray) or any(
-        hasattr(what, name) for name in ("__array__", "__array_interface__", "__dlpack__", "__cuda_array_interface__")
-    )
-
-
 def _of_sequence(what: "tuple[Any, ...] | list[Any]", make: Maker) -> Mesh:
-    """Rows of numbers, (V,), (V, F), or a list of what can be drawn."""
+    """Rows of numbers, (V,), (V, F), or what can be drawn: two arrays are (V, F) in a tuple, and two clouds in a list."""
     if len(what) == 0:
         raise ArgumentError(f"an empty {type(what).__name__}: there is nothing to show; expected {ACCEPTED}")
     if _is_rows(what):
         return from_arrays.of_rows(what, make)
-    if len(what) == 2 and _is_matrix(what[0]) and _is_faces(what[1], may_be_floats=isinstance(what, tuple)):
-        return from_arrays.of_vertices_and_faces(what[0], what[1], make)
-    if len(what) > 2 and _is_matrix(what[0]) and _is_faces(what[1], may_be_floats=False) and _dtype(what[0]) == "f":
-        raise ArgumentError(
-            f"({', '.join(_described(part) for part in what)}): expected (V, F); give further arrays in a dict: "
-            "{'V': V, 'F': F, 'C': C}"
-        )
+    parts = [_with_numpy(part) for part in what]
+    V = _matrix(parts[0]) if len(parts) > 1 else None
+    if V is not None and (parts[1] is None or _is_numbers(parts[1])):
+        if isinstance(what, tuple) and len(parts) == 2:
+            return _of_vertices_and_faces(V, parts[1], make)
+        _refuse_vertices_and_faces(V, parts, isinstance(what, tuple))
     # A mesh has one parent: those that are given stay as they are.
-    children = [part.clone() if isinstance(part, Mesh) and len(what) > 1 else make.any(part) for part in what]
+    children = [part.clone() if isinstance(part, Mesh) and len(parts) > 1 else make.any(part) for part in parts]
     return make.parts(children)
+
+
+def _is_rows(what: "tuple[Any, ...] | list[Any]") -> bool:
+    """Whether this is the rows of an array, each of three or more numbers."""
+    first = _with_numpy(what[0])
+    if isinstance(first, (tuple, list)):
+        return len(first) >= 3 and all(isinstance(x, (int, float, np.number)) for x in first)
+    return isinstance(first, np.ndarray) and first.ndim == 1 and not from_arrays.is_structured(first)
+
+
+def _with_numpy(part: Any) -> Any:
+    """An array of another library as one of numpy's; anything else as it is."""
+    return part if any(recognises(part) for recognises, _ in _CONVERSIONS) else as_numpy(part)
+
+
+def _matrix(what: Any) -> NDArray[Any] | None:
+    """An array of numbers, or a list or table of them, as n x k; None for anything else."""
+    is_list = isinstance(what, (tuple, list))
+    if not (len(what) > 0 and _is_rows(what) if is_list else is_array(what)):
+        return None
+    array = array_of(what, "points")
+    return array if array.ndim == 2 and array.dtype.kind in "iuf" else None
+
+
+def _is_numbers(what: Any) -> bool:
+    """Whether this is an array, or a list of numbers or of rows of them, which may differ in length."""
+    if isinstance(what, np.ndarray) and what.dtype == object:
+        return _is_numbers(what.tolist())
+    if isinstance(what, (tuple, list)):
+        return all(_is_row(row) for row in what)
+    return is_array(what) and not from_arrays.is_structured(what)
+
+
+def _is_row(what: Any) -> bool:
+    if isinstance(what, (tuple, list)):
+        return all(isinstance(x, (int, float, np.number)) for x in what)
+    return isinstance(what, (int, float, np.number)) or (is_array(what) and array_of(what, "faces").ndim == 1)
+
+
+def _of_vertices_and_faces(V: NDArray[Any], given: Any, make: Maker) -> Mesh:
+    faces = Faces(given)
+    got = f"({_described(V)}, {_described(given)}): expected (V, F)"
+    if faces.are_colors(len(V)):
+        raise ArgumentError(f"{got}, got what look like colours; give them in a dict: {{'V': V, 'C': C}}")
+    if not (faces.are_rows() and faces.are_whole()):
+        raise ArgumentError(
+            f"{got}, with m x 3 vertex indices or polygons; give two clouds as a list, [a, b], and further arrays in a dict: "
+            "{'V': V, 'C': C}"
+        )
+    return from_arrays.of_vertices_and_faces(V, faces.rows, make)
+
+
+def _refuse_vertices_and_faces(V: NDArray[Any], parts: list[Any], is_tuple: bool) -> None:
+    """Raises ArgumentError for a list, or for more than two parts, that may be meant as the arrays of one mesh."""
+    faces = Faces(parts[1])
+    if parts[1] is None or V.dtype.kind != "f" or V.shape[1] != 3 or not (faces.are_rows() and faces.are_integers()):
+        return
+    are_of_vertices = faces.are_below(len(V))
+    got = ", ".join(_described(part) for part in parts)
+    if len(parts) > 2 and (is_tuple or are_of_vertices):
+        raise ArgumentError(f"({got}): expected (V, F); give further arrays in a dict: {{'V': V, 'F': F, 'C': C}}")
+    if are_of_vertices:
+        raise ArgumentError(
+            f"[{got}], a mesh or two clouds: expected a tuple, (V, F), for a mesh of vertices and faces, or a list of dicts, "
+            "[{'V': a}, {'V': b}], for clouds"
+        )
 
 
 def _described(part: Any) -> str:
     shape = getattr(part, "shape", None)
     return type(part).__name__ if shape is None else " x ".join(map(str, shape))
-
-
-def _is_rows(what: "tuple[Any, ...] | list[Any]") -> bool:
-    """Whether this is the rows of an array, each of three or more numbers."""
-    first = what[0]
-    if isinstance(first, (str, os.PathLike, Mapping, Mesh)):
-        return False
-    if isinstance(first, (tuple, list)):
-        return len(first) >= 3 and all(isinstance(x, (int, float, np.number)) for x in first)
-    if from_arrays.is_structured(first) or hasattr(first, "vertices"):
-        return False
-    return _is_array(first) and len(getattr(first, "shape", ())) == 1
-
-
-def _dtype(array: Any) -> str:
-    return np.asarray(as_numpy(array)).dtype.kind
-
-
-def _is_matrix(what: Any) -> bool:
-    """Whether this is an array of numbers with rows."""
-    if isinstance(what, (tuple, list)):
-        return len(what) > 0 and _is_rows(what)
-    return _is_array(what) and len(getattr(what, "shape", ())) == 2
-
-
-def _is_faces(what: Any, may_be_floats: bool) -> bool:
-    """Whether this may be the second of (V, F): vertex indices, as floats only if `may_be_floats`."""
-    if what is None:
-        return True
-    if isinstance(what, np.ndarray) and what.dtype == object:
-        return _is_faces(what.tolist(), may_be_floats)
-    if isinstance(what, (tuple, list)):
-        return all(_is_corners(face, may_be_floats) for face in what)
-    return _is_array(what) and len(getattr(what, "shape", ())) == 2 and _are_indices(what, may_be_floats)
-
-
-def _is_corners(face: Any, may_be_floats: bool) -> bool:
-    """Whether this may be one of a list of faces."""
-    if isinstance(face, (tuple, list)):
-        return all(_is_index(i, may_be_floats) for i in face)
-    return _is_array(face) and len(getattr(face, "shape", ())) == 1 and _are_indices(face, may_be_floats)
-
-
-def _are_indices(what: Any, may_be_floats: bool) -> bool:
-    array = np.asarray(as_numpy(what))
-    if array.dtype.kind in "iu":
-        return True
-    return may_be_floats and array.dtype.kind == "f" and bool((array == np.floor(array)).all())
-
-
-def _is_index(value: Any, may_be_float: bool) -> bool:
-    if isinstance(value, (int, np.integer)):
-        return True
-    return may_be_float and isinstance(value, (float, np.floating)) and float(value).is_integer()

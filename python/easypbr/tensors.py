@@ -156,19 +156,31 @@ def _is_torch(what: Any) -> bool:
     return type(what).__module__.split(".")[0] == "torch"
 
 
+def is_array(what: Any) -> bool:
+    """Whether this is an array of numpy or of another library, by the protocols that numpy takes or by CUDA's."""
+    if isinstance(what, (np.generic, type)):
+        return False
+    return isinstance(what, np.ndarray) or any(
+        hasattr(what, name) for name in ("__array__", "__array_interface__", "__dlpack__", "__cuda_array_interface__")
+    )
+
+
 def as_numpy(what: Any) -> Any:
     """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
-    device, with or without gradients, or any object with DLPack. bfloat16 and other short floats that numpy lacks become
-    float32, and masked values NaN. Other objects are returned unchanged. Raises ArgumentError for tensors and objects with
-    DLPack that are no numpy array, and for masked values that are no floats. Structured arrays keep their masks."""
+    device, with or without gradients, or any object that is_array() tells. bfloat16 and other short floats that numpy lacks
+    become float32, and masked values NaN. Other objects are returned unchanged, numpy's scalars too. Raises ArgumentError for
+    arrays of other libraries that numpy does not take, and for masked values that are no floats. Structured arrays keep their
+    masks."""
     if _is_torch(what) and hasattr(what, "detach"):
         return _of_tensor(what)
     if isinstance(what, np.ma.MaskedArray) and what.dtype.names is None:
         return _unmasked(what)
     if isinstance(what, np.ndarray):
         return _known(what)
-    if not hasattr(what, "__dlpack__"):
+    if not is_array(what):
         return what
+    if not hasattr(what, "__dlpack__"):
+        return _by_numpy(what)
     device = what.__dlpack_device__()[0] if hasattr(what, "__dlpack_device__") else 1
     if device in (1, 3):  # The memory of the CPU, pinned or not.
         try:
@@ -180,6 +192,13 @@ def as_numpy(what: Any) -> Any:
     if hasattr(what, "get"):  # CuPy
         return what.get()
     return _known(np.asarray(what))
+
+
+def _by_numpy(what: Any) -> NDArray[Any]:
+    try:
+        return _known(np.asarray(what))
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"a {type(what).__qualname__}: expected numbers that numpy takes: {error}") from error
 
 
 def array_of(what: Any, name: str) -> NDArray[Any]:

@@ -102,7 +102,7 @@ def test_wrong_corners_are_named(F, message):
     ([[0, 1, 2], [3, 4]], "points: expected as many numbers in each row, got 3 in row 0 and 2 in row 1"),
     ([[0, 1, 2], 3], "got 3 in row 0 and a single number in row 1"),
     ([[0, 1, 2], [3, 4, [5]]], "points: expected an array of numbers"),
-    ((ARROW, [[0.0, 1.0, 2.0], [0.0, 1.0, 2.0, 3.5]]), "got 3 in row 0 and 4 in row 1; rows of faces may differ, and hold whole"),
+    ((ARROW, [[0.0, 1.0, 2.0], [0.0, 1.0, 2.0, 3.5]]), r"expected \(V, F\), with m x 3 vertex indices or polygons"),
     ({"points": [[0, 1, 2], [3, 4]]}, "points: expected an array of numbers"),
     ({"points": ARROW, "heat": [[1], [2, 3]]}, "scalars 'heat': expected an array of numbers"),
     ({"points": ARROW, "colors": [[1], [2, 3]]}, "colours: expected an array of numbers"),
