@@ -406,6 +406,64 @@ class OfJax:
         return self._array.__dlpack__()
 
 
+class OfDlpack(OfJax):
+    """Without the shape as an attribute."""
+
+    def __init__(self, array):
+        self._array = array
+
+
+class OfArray:
+    """An array that numpy takes, with nothing else."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __array__(self, dtype=None, copy=None):
+        return self._array
+
+
+class OfInterface:
+    def __init__(self, array):
+        self._array = array
+        self.__array_interface__ = array.__array_interface__
+
+
+@pytest.mark.parametrize("kind", [OfDlpack, OfArray, OfInterface])
+def test_arrays_without_a_shape(square, kind):
+    V, F = square
+    tuples = ((kind(V), kind(F)), (V, kind(F)), (V, [kind(face) for face in F]))
+    for what in (*tuples, {"V": kind(V), "F": kind(F)}, {"V": V, "F": kind(F)}):
+        np.testing.assert_array_equal(as_mesh(what).F, F)
+        np.testing.assert_array_equal(as_mesh(what).V, V)
+    for mesh in (Mesh(V, kind(F)), Mesh(kind(V), kind(F))):
+        np.testing.assert_array_equal(mesh.F, F)
+    for what in (kind(V), [kind(row) for row in V], (kind(V), None), (kind(V),)):
+        np.testing.assert_array_equal(as_mesh(what).V, V)
+    assert len(as_mesh([kind(V), kind(V)]).children) == 2
+    holes, kept = with_holes()
+    arrays = {"V": kind(holes), "C": kind(COLORS), "L": kind(np.arange(40)), "heat": kind(np.arange(40.0))}
+    mesh = as_mesh(arrays | {"scalars": {"cold": kind(np.arange(40.0))}})
+    for values in (mesh.L, mesh.scalars["heat"], mesh.scalars["cold"]):
+        np.testing.assert_array_equal(values, kept)
+
+
+def test_what_is_no_array_of_numpy_is_an_error_of_ours(square):
+    class Broken:
+        def __array__(self, dtype=None, copy=None):
+            raise TypeError("not today")
+
+    V, F = square
+    for what in (Broken(), (Broken(), F), (V, Broken()), {"V": V, "F": Broken()}):
+        with pytest.raises(easypbr.ArgumentError, match="Broken: expected numbers that numpy takes: not today"):
+            as_mesh(what)
+    for what in ({"V": V, "F": 5}, {"V": 5}, {"V": V, "E": 5}):
+        with pytest.raises(easypbr.ArgumentError, match="expected (m x 3|n x 3|k x 2)"):
+            as_mesh(what)
+    with pytest.raises(easypbr.ArgumentError, match="mesh array F: expected n x 3"):
+        Mesh(V, 5)
+
+
 @pytest.mark.parametrize("kind", [OfCuda, OfJax])
 def test_arrays_by_dlpack(square, kind):
     V, F = square

@@ -47,7 +47,7 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
     given: dict[str, Any] = {}
     others: dict[str, Any] = {}
     for word, value in arrays.items():
-        value = as_numpy(value)
+        value = value if word in _OTHERS else as_numpy(value)
         name = _CALLED.get(str(word))
         if name in given:
             raise ArgumentError(f"a dict of arrays: '{word}' is {name}, which is given already: expected one of them")
@@ -55,15 +55,15 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
             given[name] = value
         else:
             others[str(word)] = value
+    count = _vertex_count(given)
     F, face_of = triangles(given.get("F"), given.get("V"))
     given["F"] = F
     if face_of is not None:
         if others.get("source_face") is not None:
             raise ArgumentError("source_face: expected triangles beside it, got faces of other numbers of corners")
         others["source_face"] = face_of
-    if "E" in given:
-        given["E"] = edges(given["E"], len(given.get("V", ())))
-    count = len(given["V"]) if given.get("V") is not None else 0
+    if given.get("E") is not None:
+        given["E"] = edges(given["E"], count)
     if given.get("C") is not None:
         found = colors(given["C"], count)
         given["C"] = given["C"] if found is None else found
@@ -72,6 +72,17 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
     scalars = dict(named.pop("scalars", None) or {})
     scalars.update({word: _scalar(word, value, counts) for word, value in others.items()})
     return make.mesh(scalars=scalars, **given, **named)
+
+
+def _vertex_count(given: Mapping[str, Any]) -> int:
+    """The rows of V. Raises ArgumentError if they are missing beside faces or edges."""
+    if given.get("V") is not None:
+        V = array_of(given["V"], "points")
+        return len(V) if V.ndim else 0
+    other = next((name for name in ("F", "E") if given.get(name) is not None), None)
+    if other is not None:
+        raise ArgumentError(f"a dict of arrays: expected V (or {', '.join(NAMES['V'][2:5])}, ...) beside {other}, got none")
+    return 0
 
 
 def _face_counts(F: Any, split: Any, polygon_of: Any) -> tuple[int, ...]:
@@ -101,7 +112,10 @@ def _scalar(word: str, value: Any, counts: tuple[int, ...]) -> NDArray[Any]:
 def edges(given: Any, count: int) -> Any:
     """k x 2 vertex indices; "line", "loop" and "segments" as Polyscope has them for its curve networks."""
     if not isinstance(given, str):
-        return given
+        pairs = array_of(given, "edges")
+        if pairs.ndim == 0:
+            raise ArgumentError(f"edges: expected k x 2 vertex indices, 'line', 'loop' or 'segments', got {given!r}")
+        return pairs
     first = np.arange(count)
     shape = given.lower()
     if shape == "line":

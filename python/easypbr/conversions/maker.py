@@ -2,7 +2,7 @@
 
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -55,7 +55,7 @@ class Maker:
         """A mesh of arrays by their names in Mesh. Points of a cloud without a finite position are left out with a warning,
         or raise ArgumentError if `strict`."""
         given = {key: as_numpy(value) for key, value in arrays.items() if value is not None}
-        given, scalars = self._finite(given, dict(scalars or {}))
+        given, scalars = self._finite(given, {key: as_numpy(value) for key, value in (scalars or {}).items()})
         mesh = Mesh()
         mesh.assign(**given, **({"scalars": scalars} if scalars else {}))
         mesh.name = name
@@ -151,7 +151,7 @@ def triangles(faces: Any, V: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | N
     belongs to; None: each is a triangle already. Polygons of the vertices V are cut as those of files are, concave ones too."""
     if faces is None:
         return None, None
-    faces = as_numpy(faces)
+    faces = _sequence(as_numpy(faces))
     if isinstance(faces, np.ndarray) and faces.dtype == object:
         faces = faces.tolist()  # Polygons of different numbers of corners.
     if not isinstance(faces, np.ndarray):
@@ -160,8 +160,14 @@ def triangles(faces: Any, V: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | N
             return _cut(_corners(polygons), [len(face) for face in polygons], V)
         faces = np.asarray(polygons)
     if faces.ndim != 2 or faces.shape[1] <= 3:
-        return (faces if len(faces) else None), None
+        return (faces if faces.size else None), None
     return _cut(faces.ravel(), np.full(len(faces), faces.shape[1]), V)
+
+
+def _sequence(faces: Any) -> Any:
+    if not isinstance(faces, Iterable) or getattr(faces, "ndim", 1) == 0:
+        raise ArgumentError(f"faces: expected m x 3 vertex indices, or polygons, got a {type(faces).__name__}")
+    return faces
 
 
 def _corners(polygons: list[NDArray[Any]]) -> NDArray[Any]:

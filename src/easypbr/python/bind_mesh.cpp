@@ -217,8 +217,8 @@ void assign(Mesh& mesh, const nb::kwargs& values) {
 }
 
 /// The points of a cloud that have a finite position; those of a mesh are counted by its faces.
-nb::object finite_points(const ArrayLike& V, const ArrayLike& F, bool strict) {
-    if (V.is_none() || !(F.is_none() || nb::len(F) == 0)) return nb::borrow(V);
+nb::object finite_points(const ArrayLike& V, bool has_faces, bool strict) {
+    if (V.is_none() || has_faces) return nb::borrow(V);
     const nb::object array = numeric_object(V, "mesh array V");
     const nb::object kept =
         nb::module_::import_("easypbr.conversions.maker").attr("finite_rows")(array, strict);
@@ -226,7 +226,9 @@ nb::object finite_points(const ArrayLike& V, const ArrayLike& F, bool strict) {
 }
 
 void construct_from_arrays(Mesh* self, const ArrayLike& V, const ArrayLike& F, bool strict) {
-    const auto set_V = prepare_V(finite_points(V, F, strict)), set_F = prepare_F(F);
+    const nb::object faces = F.is_none() ? nb::object(nb::none()) : numeric_object(F, "mesh array F");
+    const bool has_faces = !F.is_none() && nb::cast<size_t>(faces.attr("size")) > 0;
+    const auto set_V = prepare_V(finite_points(V, has_faces, strict)), set_F = prepare_F(faces);
     released([&] {
         MeshData data;
         set_V(data);
