@@ -67,12 +67,29 @@ def test_label_maps_have_names_and_colours():
     assert LabelMap.cityscapes_train().name_of(255) == "unlabeled"
 
 
+@pytest.mark.parametrize("numbers", [
+    [(1, 0, 0), (0, 1, 0)],
+    [(1.0, 0, 0), (0, 1, 0)],
+    [(255, 0, 0), (0, 255, 0)],
+    [(255.0, 0, 0), (0, 255, 0)],
+    np.array([(1, 0, 0), (0, 1, 0)], np.uint8),
+    np.array([(65535, 0, 0), (0, 65535, 0)], np.uint16),
+], ids=["int 1", "float 1", "int 255", "float 255", "uint8", "uint16"])  # fmt: skip
+def test_colors_of_label_maps_are_those_of_meshes(numbers):
+    mesh = Mesh(np.eye(3)[:2])
+    mesh.C = numbers
+    # To the nearest of 256 codes.
+    np.testing.assert_array_equal(LabelMap(["a", "b"], numbers).colors, np.rint(mesh.C * 255))
+
+
 @pytest.mark.parametrize("arguments, message", [
     ({"names": []}, "expected classes, got none"),
     ({"names": ["a"], "colors": np.zeros((2, 3))}, "expected a colour for each of 1 classes, got 2"),
     ({"names": ["a"], "colors": np.zeros((1, 4))}, "expected texts or an n x 3 array, got 1 x 4 float64"),
-    ({"names": ["a"], "colors": [[0, 0, 256]]}, r"numbers from 0 to 255, got \(0, 0, 256\)"),
-    ({"names": ["a"], "colors": [[0, 0, 1.5]]}, r"numbers from 0 to 1, got \(0, 0, 1.5\)"),
+    ({"names": ["a"], "colors": [[0, 0, 256]]}, "LabelMap colors, .* expected 0 to 1 or 0 to 255, got 0 to 256"),
+    ({"names": ["a"], "colors": [[0, 0, 1.5]]}, "LabelMap colors, .* expected 0 to 1 or 0 to 255, got 0 to 1.5"),
+    ({"names": ["a"], "colors": [[0, -1, 0]]}, "LabelMap colors, .* expected 0 to 1 or 0 to 255, got -1 to 0"),
+    ({"names": ["a"], "colors": [[0, np.nan, 0]]}, "LabelMap colors: expected finite numbers"),
     ({"names": ["a"], "colors": ["magneta"]}, "did you mean 'magenta'"),
     ({"names": ["a"], "labels": [1, 2]}, "expected a label for each of 1 names, got 2"),
     ({"names": ["a", "b"], "labels": [1, 1]}, "label 1 occurs twice"),

@@ -18,7 +18,7 @@
 namespace easypbr::python {
 namespace {
 
-/// One colour per class: '#rrggbb' or names, or an n x 3 array of 0 to 255 (whole numbers) or 0 to 1.
+/// One colour per class: '#rrggbb' or names, or n x 3 numbers as Mesh.C takes them.
 class ColorsLike : public nb::object {
     NB_OBJECT_DEFAULT(ColorsLike, nb::object, "Sequence[str] | numpy.typing.ArrayLike | None", is_anything)
 };
@@ -36,24 +36,17 @@ T taken(nb::handle object, std::string_view what, std::string_view expected) {
     return value;
 }
 
-Rgb8 rgb8_of(nb::handle red, nb::handle green, nb::handle blue, bool whole) {
-    const Vec3d c(nb::cast<double>(red), nb::cast<double>(green), nb::cast<double>(blue));
-    const double most = whole ? 255 : 1;
-    if (!((c.array() >= 0).all() && (c.array() <= most).all()))
-        throw ArgumentError(fmt::format("LabelMap colors: expected numbers from 0 to {}, got ({}, {}, {})",
-                                        most, c.x(), c.y(), c.z()));
-    return to_rgb8(Vec3((c / most).cast<float>()));
-}
-
 std::vector<Rgb8> colors_of_array(nb::handle object) {
     const nb::object array = numeric_object(object, "LabelMap colors");
     const AnyArray shape = nb::cast<AnyArray>(array);
     if (shape.ndim() != 2 || shape.shape(1) != 3)
         throw ArgumentError(
             fmt::format("LabelMap colors: expected texts or an n x 3 array, got {}", shape_text(shape)));
-    const bool whole = nb::cast<std::string>(array.attr("dtype").attr("kind")) != "f";
+    const ArrayXf numbers = to_colors(array, {"colors", 3, 3, "LabelMap"});
+    if (!numbers.allFinite()) throw ArgumentError("LabelMap colors: expected finite numbers, got NaN");
     std::vector<Rgb8> colors;
-    for (nb::handle row : array.attr("tolist")()) colors.push_back(rgb8_of(row[0], row[1], row[2], whole));
+    for (Eigen::Index i = 0; i < numbers.rows(); ++i)
+        colors.push_back(to_rgb8(Vec3(numbers.row(i).transpose())));
     return colors;
 }
 
@@ -137,13 +130,15 @@ std::vector<T> column(const LabelMapHandle& handle, T LabelClass::*member) {
 }
 
 void bind_constructors(nb::class_<LabelMapHandle>& map) {
-    map.def("__init__", construct_label_map, nb::arg("names"), nb::arg("colors").none() = nb::none(),
-            nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
-            nb::arg("unknown") = "refused", nb::arg("name") = "",
-            "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "
-            "texts, or n x 3 numbers, integers 0 to 255 or floats 0 to 1; None: generated. `unlabelled`: the "
-            "label of unlabelled elements. `unknown`: whether non-negative labels that are not in the map "
-            "are 'refused', or shown as 'unlabelled'.");
+    map.def(
+        "__init__", construct_label_map, nb::arg("names"), nb::arg("colors").none() = nb::none(),
+        nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
+        nb::arg("unknown") = "refused", nb::arg("name") = "",
+        "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "
+        "texts, or n x 3 numbers as Mesh.C takes them: uint8 and uint16 span their range, others are 0 to "
+        "1 if none is above 1, else 0 to 255; None: generated. `unlabelled`: the label of unlabelled "
+        "elements. `unknown`: whether non-negative labels that are not in the map are 'refused', or shown "
+        "as 'unlabelled'.");
     for (const std::string& name : built_in_label_map_names())
         map.def_static(
             name.c_str(), [name] { return LabelMapHandle{built_in_label_map(name)}; },

@@ -58,7 +58,7 @@ struct Layout {
     std::string expected = shape.columns == 1 ? "n numbers" : fmt::format("n x {}", shape.columns);
     if (shape.more_columns != shape.columns) expected += fmt::format(" or n x {}", shape.more_columns);
     throw ArgumentError(
-        fmt::format("mesh array {}: expected {}, got {}", shape.name, expected, shape_text(array)));
+        fmt::format("{} {}: expected {}, got {}", shape.kind, shape.name, expected, shape_text(array)));
 }
 
 Layout layout_of(const AnyArray& array, const ArrayShape& shape) {
@@ -114,14 +114,13 @@ void normalize_given_colors(ArrayXf::Dense& C, bool integers, const ArrayShape& 
     const bool known =
         range.low >= -rounding && range.high <= 255 && (white > 1 || range.high <= 1 + rounding);
     if (!known)
-        throw ArgumentError(
-            fmt::format("mesh array {}, colours: expected 0 to 1 or 0 to 255, got {:g} to {:g}", shape.name,
-                        range.low, range.high));
+        throw ArgumentError(fmt::format("{} {}, colours: expected 0 to 1 or 0 to 255, got {:g} to {:g}",
+                                        shape.kind, shape.name, range.low, range.high));
     if (!integers && white > 1 && C.cols() == 4 && range_of_colors(C.leftCols(3)).high < 2)
         throw ArgumentError(
-            fmt::format("mesh array {}, colours: expected 0 to 1 or 0 to 255 in all columns, got "
+            fmt::format("{} {}, colours: expected 0 to 1 or 0 to 255 in all columns, got "
                         "an alpha of up to {:g}",
-                        shape.name, range.high));
+                        shape.kind, shape.name, range.high));
     parallel_for(size_t(C.size()), copy_grain, [&](size_t i) {
         float& value = C.data()[i];
         value = std::clamp(value / white, 0.0f, 1.0f);
@@ -149,15 +148,15 @@ void copy_integers(Dense& result, const Element* data, const Layout& layout, con
         return int32_t(0);
     });
     if (!all_fit)
-        throw ArgumentError(fmt::format(
-            "mesh array {}: expected whole numbers from -2147483648 to 2147483647, got others in {}",
-            shape.name, shape_text(array)));
+        throw ArgumentError(
+            fmt::format("{} {}: expected whole numbers from -2147483648 to 2147483647, got others in {}",
+                        shape.kind, shape.name, shape_text(array)));
 }
 
 /// Calls visit(pointer to the object's numbers, layout), without the GIL.
 template <class Visit>
 void visit_rows(nb::handle object, const ArrayShape& shape, const Visit& visit) {
-    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
+    const AnyArray array = numeric_array(object, fmt::format("{} {}", shape.kind, shape.name).c_str());
     const Layout layout = layout_of(array, shape);
     released([&] { visit_elements(array, [&](const auto* data) { visit(data, layout); }); });
 }
@@ -312,7 +311,7 @@ nb::tuple vector_to_tuple(const Vec3& vector) {
 
 template <class Scalar, int Cols>
 typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape) {
-    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
+    const AnyArray array = numeric_array(object, fmt::format("{} {}", shape.kind, shape.name).c_str());
     const Layout layout = layout_of(array, shape);
     typename Array<Scalar, Cols>::Dense result(layout.rows, layout.cols);
     released([&] {

@@ -65,11 +65,12 @@ Vec3 to_linear_color(nb::handle object, const char* what);
 nb::object matrix_to_numpy(const Eigen::MatrixXd& matrix);
 nb::tuple vector_to_tuple(const Vec3& vector);
 
-/// What a mesh array holds.
+/// What a mesh array, or another array of that form, holds.
 struct ArrayShape {
     const char* name;
-    int columns;       ///< columns it must have
-    int more_columns;  ///< or these
+    int columns;                      ///< columns it must have
+    int more_columns;                 ///< or these
+    const char* kind = "mesh array";  ///< said before the name in messages
 };
 
 /// The object's numbers, copied once and in parallel. Integer arrays take whole numbers within int32. Throws
