@@ -3,11 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
 from ._easypbr import arrow, arrows, axes, box, capsule, cone, cylinder, grid, icosphere, plane, sphere, teapot, torus
 from .errors import ArgumentError
+from .tensors import array_of
 
 __all__ = [
     "arrow",
@@ -44,8 +45,8 @@ def camera_frustum(
     if not isinstance(camera, (tuple, list)) or len(camera) != 2:
         raise ArgumentError(f"camera_frustum: expected a Camera or (K, T_world_cam), got a {type(camera).__name__}")
     if size is None and image is not None:
-        rows, columns = np.shape(image)[:2]
-        size = columns, rows
+        image = _picture(image, "camera_frustum: image")
+        size = image.shape[1], image.shape[0]
     if size is None:
         raise ArgumentError("camera_frustum: expected a size, (width, height), or an image, beside (K, T_world_cam)")
     K, T_world_cam = camera
@@ -67,7 +68,8 @@ def image_plane(image: ArrayLike, width: float | None = None, height: float | No
     `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by
     default the plane is 1 high.
     """
-    rows, columns = np.shape(image)[:2]
+    image = _picture(image, "image_plane: image")
+    rows, columns = image.shape[:2]
     if width is None:
         width = (1.0 if height is None else height) * columns / rows
     if height is None:
@@ -86,13 +88,22 @@ def image_plane(image: ArrayLike, width: float | None = None, height: float | No
     return mesh
 
 
+def _picture(image: ArrayLike, name: str) -> NDArray[Any]:
+    """The image as an array of numpy's with rows and columns. Raises ArgumentError, which begins with the name."""
+    array = array_of(image, name)
+    if array.ndim not in (2, 3) or array.size == 0:
+        got = " x ".join(map(str, array.shape)) or f"a {type(image).__name__}"
+        raise ArgumentError(f"{name}: expected an array of height x width (x 1 to 4), such as load_image(path), got {got}")
+    return array
+
+
 def voxel_grid(array: ArrayLike, origin: ArrayLike = (0, 0, 0), cell_size: float = 1.0, empty: int = 0) -> "_easypbr.Mesh":
     """The occupied cells of a grid, drawn as cubes. Cell [i, j, k] spans origin + cell_size * (i..i+1, j..j+1, k..k+1).
 
     `array` is nx x ny x nz of bool (occupancy) or of integers (labels; those that are not `empty`), or
     nx x ny x nz x 3 or 4 of uint8 or floats 0 to 1 (sRGB colours; cells with alpha 0 or NaN are empty).
     """
-    array = np.asarray(array)
+    array = array_of(array, "voxel_grid")
     is_color = array.ndim == 4 and array.shape[3] in (3, 4) and (array.dtype == np.uint8 or array.dtype.kind == "f")
     is_cells = array.ndim == 3 and array.dtype.kind in "biu"
     if is_color:

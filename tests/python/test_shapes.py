@@ -131,6 +131,36 @@ def test_camera_frustum_says_what_is_missing():
         shapes.camera_frustum(Camera(), size=(4, 4), depth=NAN)
 
 
+class OfDlpack:
+    """An array of another library with nothing but DLPack."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __dlpack_device__(self):
+        return self._array.__dlpack_device__()
+
+    def __dlpack__(self, **_):
+        return self._array.__dlpack__()
+
+
+def test_images_of_other_libraries():
+    image, lens = np.zeros((48, 64, 3), np.uint8), (np.eye(3), np.eye(4))
+    of_numpy, of_other = (shapes.camera_frustum(lens, given) for given in (image, OfDlpack(image)))
+    np.testing.assert_array_equal(of_other.V, of_numpy.V)
+    np.testing.assert_array_equal(of_other.children[0].material.base_color_texture, image)
+    np.testing.assert_array_equal(shapes.image_plane(OfDlpack(image)).V, shapes.image_plane(image).V)
+    assert len(shapes.voxel_grid(OfDlpack(np.ones((2, 2, 2), int))).V) == 8
+
+
+@pytest.mark.parametrize("image, got", [(np.zeros(5), "5"), ("photo.png", "a str"), (np.zeros((0, 4, 3)), "0 x 4 x 3")])
+def test_what_is_no_image_is_refused(image, got):
+    with pytest.raises(easypbr.ArgumentError, match=rf"camera_frustum: image: expected .*load_image\(path\), got {got}$"):
+        shapes.camera_frustum((np.eye(3), np.eye(4)), image)
+    with pytest.raises(easypbr.ArgumentError, match=rf"image_plane: image: expected .*load_image\(path\), got {got}$"):
+        shapes.image_plane(image)
+
+
 def test_voxels_of_occupancy_labels_and_colors():
     occupied = np.zeros((2, 3, 4), bool)
     occupied[1, 2, 3] = occupied[0, 0, 0] = True
