@@ -84,6 +84,10 @@ def test_further_columns_are_those_of_a_text_file(tmp_path):
     ({"points": POINTS, "heat": POINTS}, "no array 'heat'; a dict may hold V, F"),
     ({"points": POINTS, "heat": POINTS[:7, 0]}, "scalars 'heat': expected 40 values, one for each vertex, got 7"),
     ({"points": POINTS, "faces": [[0, 1, 2, 3]], "heat": [1, 2]}, "40 values, one for each vertex, or 1, one for each face, got 2"),
+    ({"faces": [[0, 1, 2]]}, "expected V .or points, xyz, vertices, .* beside F, got none"),
+    ({"F": [[0, 1, 2, 3]], "V": None}, "expected V .or points, xyz, vertices, .* beside F, got none"),
+    ({"edges": "line"}, "expected V .* beside E, got none"),
+    ({"points": POINTS, "heat": np.zeros((7, 1))}, "scalars 'heat': expected 40 values, one for each vertex, got 7"),
     ([shapes.box(), 7], "cannot show a builtins.int"),
 ])  # fmt: skip
 def test_errors_name_what_is_accepted(what, message):
@@ -338,6 +342,13 @@ def test_columns_of_flags():
     mesh = as_mesh(frame(columns))
     for values in (mesh.scalars["ground"], mesh.scalars["r"], mesh.I, mesh.L):
         np.testing.assert_array_equal(values, flags)
+
+
+def test_scalars_of_one_column_in_a_dict(square):
+    V, F = square
+    mesh = as_mesh({"V": V, "F": F, "heat": np.arange(4.0)[:, None], "area": [[1], [2]]})
+    np.testing.assert_array_equal(mesh.scalars["heat"], np.arange(4))
+    np.testing.assert_array_equal(mesh.scalars["area"], [1, 2])
 
 
 # Masked arrays.

@@ -98,6 +98,8 @@ def _scalar(word: str, value: Any, counts: tuple[int, ...]) -> NDArray[Any]:
     """`counts`: of vertices, and of faces if there are any."""
     vertices, *others = counts
     array = array_of(value, f"scalars '{word}'") if not isinstance(value, str) else np.empty(0, str)
+    if array.ndim == 2 and array.shape[1] == 1:
+        array = array[:, 0]
     if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in counts and len(array):
         return array.astype(np.float32) if array.dtype.kind == "b" else array
     if array.dtype.kind in "biuf" and array.ndim == 1 and vertices:
