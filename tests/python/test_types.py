@@ -35,6 +35,10 @@ version: str = easypbr.__version__
 cloud: Mesh = easypbr.as_mesh(np.zeros((3, 3)), strict=True)
 image: NDArray[Any] = easypbr.render([mesh, np.zeros((3, 3))], camera="front", roughness=0.3, color="red", tonemap="agx")
 shared: NDArray[Any] = mesh.V
+mesh.scalars["heat"] = [1.0, 2.0]
+mesh.scalars.update(heat=[1.0, 2.0])
+mesh.scalars = {"heat": [1.0, 2.0]}
+heat: NDArray[Any] = mesh.scalars["heat"]
 easypbr.render(mesh, roughnes=0.3)  # WRONG
 easypbr.render(mesh, roughness="rough")  # WRONG
 easypbr.render(mesh, samples="4")  # WRONG
@@ -42,6 +46,7 @@ easypbr.render(mesh, tonemap="filmic")  # WRONG
 linear: str = easypbr.render(mesh, hdr=True)  # WRONG
 view.render(samples="many")  # WRONG
 view.focus_at(1)  # WRONG
+mesh.scalars["heat"] = object()  # WRONG
 view.settings.camera.fov = 3  # WRONG
 view.add_panel("Mine", lambda: None)  # WRONG
 view.on_event(lambda: True)  # WRONG

@@ -135,8 +135,7 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
                 const MeshChange change = prepare_scalars(value);
                 released([&] { m.edit(change); });
             },
-            nb::for_getter(
-                nb::sig("def scalars(self) -> collections.abc.MutableMapping[str, numpy.ndarray]")),
+            nb::for_getter(nb::sig("def scalars(self) -> easypbr.scalars.Scalars")),
             nb::for_setter(nb::arg("value").none()),
             "Named scalar fields of vertices or faces: mesh.scalars['heat'] = values adds or replaces, del "
             "removes; assign a dict to replace all.")
