@@ -98,25 +98,43 @@ RELATIONSHIPS = """<?xml version="1.0"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
 <Relationship Target="/3D/3dmodel.model" Id="r0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
 </Relationships>"""
-MODEL = """<?xml version="1.0"?>
-<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
-<basematerials id="1"><base name="x" displaycolor="COLOR"/></basematerials>
-<object id="2" type="model" pid="1" pindex="0"><mesh>
-<vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices>
-<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object></resources>
-<build><item objectid="2"/></build></model>"""
+VERTICES = '<vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices>'
+TRIANGLE = '<triangle v1="0" v2="1" v3="2"/>'
+
+
+def object_of_3mf(number: int, properties: str = "", triangles: str = TRIANGLE) -> str:
+    return (f'<object id="{number}" type="model" {properties}><mesh>{VERTICES}'
+            f"<triangles>{triangles}</triangles></mesh></object>")
+
+
+def read_3mf(path: pathlib.Path, resources: str, object_count: int = 1) -> list[Mesh]:
+    """The meshes of a 3MF file with these resources, whose objects are 1, 2, ..., that have faces."""
+    items = "".join(f'<item objectid="{i + 1}"/>' for i in range(object_count))
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("[Content_Types].xml", CONTENT_TYPES)
+        file.writestr("_rels/.rels", RELATIONSHIPS)
+        file.writestr(
+            "3D/3dmodel.model", '<?xml version="1.0"?><model unit="millimeter" '
+            'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" '
+            'xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02">'
+            f"<resources>{resources}</resources><build>{items}</build></model>")
+    return surfaces(Mesh(path))
+
+
+def surfaces(mesh: Mesh) -> list[Mesh]:
+    return ([mesh] if len(mesh.F) else []) + [found for child in mesh.children for found in surfaces(child)]
 
 
 @pytest.mark.parametrize("text, opacity", [("#FF8000", 1), ("#FF8000FF", 1), ("#ff800033", 0.2)])
 def test_display_colors_of_3mf_are_srgb(crashing, tmp_path, text, opacity):
     """3MF Core Specification, 3.4.1.1: sRGB and alpha. 128 is ((128 / 255 + 0.055) / 1.055)^2.4 = 0.21586, to 5 digits."""
-    path = tmp_path / "a.3mf"
-    with zipfile.ZipFile(path, "w") as file:
-        file.writestr("[Content_Types].xml", CONTENT_TYPES)
-        file.writestr("_rels/.rels", RELATIONSHIPS)
-        file.writestr("3D/3dmodel.model", MODEL.replace("COLOR", text))
-    mesh = Mesh(path)
-    while mesh.children:
-        mesh = mesh.children[0]
+    materials = f'<basematerials id="9"><base name="x" displaycolor="{text}"/></basematerials>'
+    mesh, = read_3mf(tmp_path / "a.3mf", materials + object_of_3mf(1, 'pid="9" pindex="0"'))
     assert mesh.material.base_color == pytest.approx((1, 0.21586, 0), abs=1e-5)
     assert mesh.material.opacity == pytest.approx(opacity, abs=1e-6)
+
+
+def test_a_3mf_file_without_materials_has_the_default_color(crashing, tmp_path):
+    """assimp's default material is no display colour: as sRGB, its 0.6 would be 0.319."""
+    mesh, = read_3mf(tmp_path / "a.3mf", object_of_3mf(1))
+    assert mesh.material.base_color == shapes.box().material.base_color

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/core/color.h"
@@ -39,11 +40,18 @@ void convert_display_color(const aiColor4D& color, Material& out) {
     if (color.a > 0) out.opacity = std::min(color.a, 1.0f);
 }
 
+/// 3MF materials have display colours, but for the one that assimp gives to a file without materials: its
+/// colour is linear, as ours. The names of those that a file has begin with "id" there.
+bool has_display_color(const aiMaterial& material, bool is_3mf) {
+    return is_3mf && std::string_view(material.GetName().C_Str()) != AI_DEFAULT_MATERIAL_NAME;
+}
+
 void convert_factors(const aiMaterial& from, bool is_3mf, Material& out) {
     if (const auto color = property<aiColor4D>(from, AI_MATKEY_BASE_COLOR)) {
         out.base_color = Vec3(color->r, color->g, color->b);
         out.opacity = color->a;
-    } else if (const auto display = property<aiColor4D>(from, AI_MATKEY_COLOR_DIFFUSE); display && is_3mf) {
+    } else if (const auto display = property<aiColor4D>(from, AI_MATKEY_COLOR_DIFFUSE);
+               display && has_display_color(from, is_3mf)) {
         convert_display_color(*display, out);
     } else if (const auto diffuse = property<aiColor3D>(from, AI_MATKEY_COLOR_DIFFUSE)) {
         out.base_color = positive(*diffuse);
