@@ -138,3 +138,21 @@ def test_a_3mf_file_without_materials_has_the_default_color(crashing, tmp_path):
     """assimp's default material is no display colour: as sRGB, its 0.6 would be 0.319."""
     mesh, = read_3mf(tmp_path / "a.3mf", object_of_3mf(1))
     assert mesh.material.base_color == shapes.box().material.base_color
+
+
+#: A triangle of an AMF file, with what stands between its vertices and their use.
+AMF = """<?xml version="1.0"?><amf unit="millimeter"><object id="0"><mesh><vertices>
+<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices>
+<volume>COLOR<triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object></amf>"""
+
+
+@pytest.mark.parametrize("text, colors", [("", []), ("<color><r>1</r><g>0.5</g><b>0</b></color>", [[1, 0.5, 0, 1]] * 3),
+                                          ("<color><r>0</r><g>0</g><b>0</b></color>", [[0, 0, 0, 1]] * 3)])
+def test_an_amf_file_without_colors_has_none(crashing, tmp_path, text, colors):
+    """assimp gives it transparent black at each vertex; 1, 0.5 and 0 are exact."""
+    path = tmp_path / "a.amf"
+    path.write_text(AMF.replace("COLOR", text))
+    mesh, = surfaces(Mesh(path))
+    assert mesh.C.tolist() == colors

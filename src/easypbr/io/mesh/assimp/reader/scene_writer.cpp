@@ -32,6 +32,13 @@ struct Elements {
     std::vector<uint32_t> materials;
 };
 
+/// assimp fills the colours of an AMF file that has none with transparent black.
+bool has_colors(const aiMesh& mesh) {
+    const aiColor4D* const colors = mesh.mColors[0];
+    return colors && std::any_of(colors, colors + mesh.mNumVertices,
+                                 [](const aiColor4D& color) { return color != aiColor4D(0, 0, 0, 0); });
+}
+
 class SceneWriter {
   public:
     SceneWriter(const aiScene& scene, MessageWriter& out) : scene_(scene), out_(out) {}
@@ -107,7 +114,7 @@ class SceneWriter {
             count += mesh->mNumVertices;
             normals = normals && mesh->HasNormals();
             uvs = uvs || mesh->HasTextureCoords(0);
-            colors = colors || mesh->HasVertexColors(0);
+            colors = colors || has_colors(*mesh);
         }
         if (count > uint64_t(std::numeric_limits<int32_t>::max()))
             throw std::runtime_error("more than 2^31 vertices");
@@ -136,7 +143,7 @@ class SceneWriter {
 
     /// White for a mesh that has none beside one that has.
     void write_colors(const aiMesh& mesh) {
-        const aiColor4D* colors = mesh.mColors[0];
+        const aiColor4D* colors = has_colors(mesh) ? mesh.mColors[0] : nullptr;
         for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
             const aiColor4D color = colors ? colors[i] : aiColor4D(1, 1, 1, 1);
             out_.put(std::array{float(color.r), float(color.g), float(color.b), float(color.a)});
