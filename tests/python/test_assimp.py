@@ -1,4 +1,5 @@
-"""Files that assimp does not survive: they end its own process, and are errors here."""
+"""What assimp reads, and files that it does not survive: they end its own process, and are errors here."""
+import logging
 import os
 import pathlib
 import signal
@@ -138,6 +139,18 @@ def test_a_3mf_file_without_materials_has_the_default_color(crashing, tmp_path):
     """assimp's default material is no display colour: as sRGB, its 0.6 would be 0.319."""
     mesh, = read_3mf(tmp_path / "a.3mf", object_of_3mf(1))
     assert mesh.material.base_color == shapes.box().material.base_color
+
+
+def test_colors_of_3mf_that_are_not_read_are_named(crashing, tmp_path, caplog):
+    bases = "".join(f'<base name="{color}" displaycolor="{color}"/>' for color in ("#FF0000", "#00FF00"))
+    materials = f'<basematerials id="9">{bases}</basematerials>'
+    red, green = (TRIANGLE.replace("/>", f' pid="9" p1="{i}"/>') for i in (0, 1))
+    with caplog.at_level(logging.WARNING, "easypbr"):
+        read_3mf(tmp_path / "one.3mf", materials + object_of_3mf(1, triangles=red + red))
+        assert not caplog.messages
+        read_3mf(tmp_path / "two.3mf", materials + object_of_3mf(1, triangles=red + green))
+    message, = caplog.messages
+    assert message.endswith("left out: materials of single triangles (objects: 1)")
 
 
 #: A triangle of an AMF file, with what stands between its vertices and their use.

@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/folder.h"
+#include "easypbr/io/mesh/assimp/colors_of_3mf.h"
 #include "easypbr/io/mesh/assimp/message.h"
 #include "easypbr/io/mesh/assimp/message_decoder.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -110,7 +111,9 @@ LoadedScene load_assimp(const fs::path& path) {
 }
 
 LoadedScene load_assimp(const fs::path& path, const AssimpLimits& limits) {
-    return decode_scene(ask_assimp(path, limits).bytes(), path, limits.bytes);
+    LoadedScene scene = decode_scene(ask_assimp(path, limits).bytes(), path, limits.bytes);
+    if (extension_of(path) == "3mf") warn_of_colors_of_3mf(path);
+    return scene;
 }
 
 std::vector<std::string> assimp_extensions() {
