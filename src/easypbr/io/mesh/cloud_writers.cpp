@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "easypbr/io/archive/zip_writer.h"
+#include "easypbr/io/mesh/left_out.h"
 #include "easypbr/io/tables/npy_builder.h"
 #include "easypbr/io/tables/vertex_arrays.h"
 #include "easypbr/io/tables/vertex_rows.h"
@@ -102,6 +103,8 @@ std::string encode_npz(const MeshData& mesh) {
     add("L", "<i4", mesh.L);
     add("I", "<f4", mesh.I);
     if (!mesh.offset.isZero(0)) add("offset", "<f8", mesh.offset);
+    if (keeps_voxel_size(mesh, "npz"))
+        add("voxel_size", "<f4", Array1f::Dense(Array1f::Dense::Constant(1, mesh.voxel_size)));
     const std::vector<std::string> names = scalar_field_names(mesh);
     for (size_t i = 0; i < names.size(); ++i) add(names[i], "<f4", mesh.scalars[i].values);
     return archive.finish();

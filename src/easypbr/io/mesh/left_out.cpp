@@ -106,6 +106,12 @@ std::vector<std::string> arrays_left_out(const MeshData& mesh, const std::string
     return names;
 }
 
+/// What the values mean. No format has the names and colours of labels.
+void add_meanings(const MeshData& mesh, const std::string& extension, std::vector<std::string>& names) {
+    if (mesh.voxel_size > 0 && !keeps_voxel_size(mesh, extension)) names.emplace_back(left_out_voxel_size);
+    if (mesh.label_map && !mesh.L.empty()) names.emplace_back("the label map");
+}
+
 /// What the colours of vertices are multiplied by, linear, and the opacity.
 Vec4 factor_of(const Material& material, bool beside_colors) {
     const bool is_white = beside_colors && material.has_default_color();
@@ -154,8 +160,13 @@ ArrayXf colors_times(const MeshData& mesh, const std::vector<int>& material,
 
 }  // namespace
 
+bool keeps_voxel_size(const MeshData& mesh, const std::string& extension) {
+    return mesh.voxel_size > 0 && (extension == "glb" || (extension == "npz" && mesh.F.empty()));
+}
+
 std::vector<std::string> left_out(const MeshData& mesh, const std::string& extension) {
     std::vector<std::string> names = arrays_left_out(mesh, extension);
+    add_meanings(mesh, extension, names);
     if (extension == "obj")
         add_materials(mesh, properties_of_obj, names);
     else if (extension != "glb" && mesh.splats.empty())

@@ -214,6 +214,15 @@ void require_vertices(const Mesh& mesh, const fs::path& path) {
         throw ArgumentError(fmt::format("cannot write {}: the mesh has no vertices", path.string()));
 }
 
+/// Whether a mesh of the tree is voxels: one of several sizes is none.
+bool has_voxels(const Mesh& mesh) {
+    bool has_some = false;
+    for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+        has_some = has_some || data->voxel_size > 0;
+    });
+    return has_some;
+}
+
 /// `beside`: what of a scene is left out beside the mesh.
 void save(const Mesh& mesh, const std::vector<std::string>& beside, const fs::path& path) {
     const std::string extension = extension_of(path);
@@ -234,6 +243,7 @@ void save(const Mesh& mesh, const std::vector<std::string>& beside, const fs::pa
     const MeshData own = flattened_for(extension, mesh);
     const MeshData flat = extension == "obj" ? own : with_material_colors(own);
     std::vector<std::string> names = left_out(flat, extension);
+    if (flat.voxel_size == 0 && has_voxels(mesh)) names.emplace_back(left_out_voxel_size);
     names.insert(names.end(), beside.begin(), beside.end());
     warn_of_left_out(names, path, flat.name);
     if (extension == "obj") return save_obj(flat, path);

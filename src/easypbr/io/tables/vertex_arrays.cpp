@@ -50,10 +50,11 @@ const Spellings intensity_names{{"intensity"}, {"intensities"}, {"reflectance"},
 const Spellings packed_color_names{{"rgb"}, {"rgba"}};
 
 /// What else arrays of NPZ files and packed colours are called.
-const Spellings array_names{
-    {"v"},      {"f"},       {"faces"}, {"triangles"}, {"e"},  {"edges"}, {"n"},      {"normals"},
-    {"normal"}, {"c"},       {"rgb"},   {"rgba"},      {"uv"}, {"uvs"},   {"t"},      {"tangents"},
-    {"colors"}, {"colours"}, {"color"}, {"texcoords"}, {"b"},  {"l"},     {"offset"}, {"bitangent_lengths"}};
+const Spellings array_names{{"voxel_size"}, {"v"},        {"f"},      {"faces"},   {"triangles"},
+                            {"e"},          {"edges"},    {"n"},      {"normals"}, {"normal"},
+                            {"c"},          {"rgb"},      {"rgba"},   {"uv"},      {"uvs"},
+                            {"t"},          {"tangents"}, {"colors"}, {"colours"}, {"color"},
+                            {"texcoords"},  {"b"},        {"l"},      {"offset"},  {"bitangent_lengths"}};
 
 /// What a field is called without CloudCompare's prefix.
 std::string without_prefix(std::string_view name) {

@@ -33,10 +33,12 @@ struct MeshContent {
     std::vector<std::array<int, 3>> parts;  ///< first face, count of faces, material
     std::vector<size_t> materials;          ///< numbers in the file
     bool is_flat = false;
+    float voxel_size = 0;
     uint64_t rest_shape = 0, rest_shape_faces = 0;  ///< which decide on sharp edges
 
     auto values() const {
-        return std::tie(revisions, scalars, parts, materials, is_flat, rest_shape, rest_shape_faces);
+        return std::tie(revisions, scalars, parts, materials, is_flat, voxel_size, rest_shape,
+                        rest_shape_faces);
     }
     bool operator<(const MeshContent& other) const { return values() < other.values(); }
 };
@@ -138,6 +140,7 @@ class GlbBuilder {
             content.parts.push_back({part.first_face, part.face_count, part.material});
         content.materials = materials;
         content.is_flat = data.style.flat.value_or(false);
+        content.voxel_size = data.voxel_size;
         content.rest_shape = data.rest_shape.V.revision();
         content.rest_shape_faces = data.rest_shape.F_revision;
         return content;
@@ -162,7 +165,9 @@ class GlbBuilder {
             primitives.push_back(points(data, std::move(attributes)));
             if (!materials.empty()) primitives.back()["material"] = materials[0];
         }
-        content_.json["meshes"].push_back({{"name", data.name}, {"primitives", std::move(primitives)}});
+        OrderedJson mesh{{"name", data.name}, {"primitives", std::move(primitives)}};
+        if (data.voxel_size > 0) mesh["extras"][gltf_voxel_size] = data.voxel_size;
+        content_.json["meshes"].push_back(std::move(mesh));
     }
 
     OrderedJson points(const MeshData& data, OrderedJson attributes) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -18,10 +19,22 @@ GltfKind kind_of(GltfMode mode) {
                                        : GltfKind::lines;
 }
 
+/// What EasyPBR wrote in the extras of an object; null: nothing.
+const Json* own_extra(const Json& object, const char* key) {
+    const Json* extras = member(object, "extras");
+    return extras && extras->is_object() ? member(*extras, key) : nullptr;
+}
+
 /// Whether a primitive of lines is E of a mesh with faces, as EasyPBR wrote it: faces are drawn without.
 bool has_edges_of_faces(const Json& primitive) {
-    const Json* extras = member(primitive, "extras");
-    return extras && extras->is_object() && extras->contains(gltf_edges_of_faces);
+    return own_extra(primitive, gltf_edges_of_faces) != nullptr;
+}
+
+/// 0: the mesh is no voxels.
+float gltf_voxel_size_of(const Json& mesh) {
+    const Json* size = own_extra(mesh, gltf_voxel_size);
+    const float value = size && size->is_number() ? size->get<float>() : 0;
+    return value > 0 && std::isfinite(value) ? value : 0;
 }
 
 /// Reads a mesh as one for each group of its primitives.
@@ -47,13 +60,16 @@ class MeshReader {
         std::stable_partition(groups_.begin(), groups_.end(),
                               [](const GltfPrimitiveGroup& group) { return group.kind == GltfKind::faces; });
         const std::string name = document_.text(source_.json, "name");
+        const float voxel_size = gltf_voxel_size_of(source_.json);
         if (groups_.empty() && splats_.size() == 1) {
             splats_[0].data.name = name;
+            splats_[0].data.voxel_size = voxel_size;
             return std::move(splats_[0]);
         }
         GltfMesh mesh;
         if (!groups_.empty()) mesh = build(groups_[0]);
         mesh.data.name = name;
+        mesh.data.voxel_size = voxel_size;
         for (GltfMesh& splats : splats_) add_child(mesh, "splats", std::move(splats));
         for (size_t i = 1; i < groups_.size(); ++i)
             add_child(mesh, groups_[i].kind == GltfKind::lines ? "lines" : "points", build(groups_[i]));

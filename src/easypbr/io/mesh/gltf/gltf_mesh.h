@@ -14,6 +14,9 @@ namespace easypbr::io {
 /// In the extras of a primitive of lines that EasyPBR writes beside faces: it is their E, which is not drawn.
 inline constexpr const char* gltf_edges_of_faces = "EasyPBR:edges_of_faces";
 
+/// In the extras of a mesh that EasyPBR writes of voxels: their edge (MeshData::voxel_size).
+inline constexpr const char* gltf_voxel_size = "EasyPBR:voxel_size";
+
 struct GltfMesh {
     MeshData data;
     Deformation deformation;                       ///< empty without joints and morph targets

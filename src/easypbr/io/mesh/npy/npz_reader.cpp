@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/error.h"
@@ -111,6 +112,7 @@ class NpzReader {
             if (&array != positions) add_values(array, tables);
         mesh_ = read_binary_cloud(source_, tables);
         mesh_.offset += offset_;
+        mesh_.voxel_size = voxel_size_;
         check_and_triangulate();
         add_face_values();
         return std::move(mesh_);
@@ -163,6 +165,7 @@ class NpzReader {
         if (is_called(named, edge_names)) return read_edges(named);
         if (named.lower_name == "offset") return read_offset(named);
         if (array.is_structured()) return leave_out(named);
+        if (named.lower_name == "voxel_size" && array.size() == 1) return read_voxel_size(named);
         if (rows != points_ && rows == faces_.rows && columns == 1) {
             face_values_.push_back(&named);
             return;
@@ -197,6 +200,13 @@ class NpzReader {
         if (array.array.is_structured() || array.array.size() != 3) refuse(array, "3 numbers");
         offset_ = values_of<Eigen::VectorXd>(array);
         if (!offset_.allFinite()) refuse(array, "3 finite numbers");
+    }
+
+    /// One of a mesh with faces says how it was made, not what it is.
+    void read_voxel_size(const NamedArray& array) {
+        const float size = values_of<Eigen::VectorXf>(array)[0];
+        if (faces_.rows > 0 || !(size > 0) || !std::isfinite(size)) return leave_out(array);
+        voxel_size_ = size;
     }
 
     void check_and_triangulate() {
@@ -246,6 +256,7 @@ class NpzReader {
     Polygons faces_;
     Integers edges_;
     Vec3d offset_ = Vec3d::Zero();
+    float voxel_size_ = 0;
     MeshData mesh_;
 };
 
