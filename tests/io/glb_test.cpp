@@ -75,6 +75,40 @@ TEST(Glb, RoundTripsValuesOfVertices) {
     EXPECT_EQ(points.scalars.at(0).values, data.scalars[0].values);
 }
 
+// The attributes of the mesh's own labels and intensities have these names behind their "_".
+TEST(Glb, ScalarsCalledAsLabelsAndIntensitiesStayScalars) {
+    const std::vector<std::string> names{"LABEL", "INTENSITY", "_LABEL", "__INTENSITY", "label", "_x"};
+    for (const bool has_own : {false, true}) {
+        MeshData mesh;
+        mesh.V = Array3f::Dense::Zero(2, 3);
+        for (size_t i = 0; i < names.size(); ++i)
+            mesh.scalars.push_back({names[i], Array1f::Dense::Constant(2, 10 + float(i))});
+        if (has_own) {
+            mesh.L = Array1i::Dense::Constant(2, 7);
+            mesh.I = Array1f::Dense::Constant(2, 0.5f);
+        }
+        const MeshData back = first_child(round_trip(Mesh(mesh)).mesh);
+        EXPECT_EQ(back.L, mesh.L);
+        EXPECT_EQ(back.I, mesh.I);
+        EXPECT_EQ(back.scalars.size(), names.size());
+        for (size_t i = 0; i < names.size(); ++i)
+            EXPECT_EQ(scalar_named(back, names[i]).values[1], 10 + float(i)) << names[i];
+    }
+}
+
+TEST(Glb, AMeshKeepsVerticesThatNoEdgeOrFaceIndexes) {
+    MeshData mesh;
+    mesh.V = Array3f::Dense{{0, 0, 0}, {9, 9, 9}, {1, 0, 0}, {0, 1, 0}};
+    mesh.E = Array2i::Dense{{0, 2}};
+    MeshData back = first_child(round_trip(Mesh(mesh)).mesh);
+    EXPECT_EQ(back.V, mesh.V);
+    EXPECT_EQ(back.E, mesh.E);
+    mesh.F = Array3i::Dense{{0, 2, 3}};
+    back = first_child(round_trip(Mesh(mesh)).mesh);
+    EXPECT_EQ(back.V.rows(), 4);
+    EXPECT_EQ(back.E, mesh.E);
+}
+
 TEST(Glb, SaysWhatItLeavesOut) {
     MeshData data = square();
     data.L = Array1i::Dense::Constant(2, 5);

@@ -29,10 +29,10 @@ struct GltfMesh {
 /// A mesh draws faces, or lines or points of one material: others of its primitives are children of it, where
 /// there are faces all lines and points, but for lines marked by gltf_edges_of_faces. Splats are the mesh
 /// where they are its only primitive, else children. Primitives with the same attributes share their
-/// vertices, in the order of the file. Of lines, points and accessors in `shared_positions` a mesh has only
-/// the vertices that it indexes. Without any normals the mesh is drawn flat. Where only some primitives have
-/// normals, the faces of the others have vertices of their own with the normals of the faces. Throws
-/// FormatError as load_gltf() does.
+/// vertices, in the order of the file. Of points, of lines beside others and of accessors in
+/// `shared_positions` a mesh has only the vertices that it indexes. Without any normals the mesh is drawn
+/// flat. Where only some primitives have normals, the faces of the others have vertices of their own with the
+/// normals of the faces. Throws FormatError as load_gltf() does.
 GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
                         const std::set<size_t>& shared_positions, size_t index);
 

@@ -124,10 +124,12 @@ class MeshBuilder {
     }
 
     /// Whether a mesh keeps the rows that it does not index, so that vertices keep the numbers that they have
-    /// in the file.
+    /// in the file. Points that none indexes are not drawn; lines beside others do without their vertices.
     bool keeps_all_rows(size_t block) const {
-        return group_.kind == GltfKind::faces &&
-               !shared_positions_.contains(*block_accessors_[block]->position);
+        const bool is_whole_mesh = source_.json.at("primitives").size() == group_.primitives.size();
+        const bool is_kept =
+            group_.kind == GltfKind::faces || (group_.kind == GltfKind::lines && is_whole_mesh);
+        return is_kept && !shared_positions_.contains(*block_accessors_[block]->position);
     }
 
     void read_blocks() {

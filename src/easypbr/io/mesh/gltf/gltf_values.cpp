@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
@@ -30,6 +31,24 @@ bool are_labels(const ArrayXf::Dense& values) {
            });
 }
 
+/// Whether the name, without any "_" before it, is that of the attribute of labels or of intensities.
+bool is_name_of_own(std::string_view name) {
+    const size_t begin = name.find_first_not_of('_');
+    if (begin == std::string_view::npos) return false;
+    const std::string attribute = fmt::format("_{}", name.substr(begin));
+    return attribute == gltf_label_name || attribute == gltf_intensity_name;
+}
+
+/// Names with another meaning have a second "_".
+std::string attribute_name(const std::string& scalar) {
+    return (is_name_of_own(scalar) ? "__" : "_") + scalar;
+}
+
+std::string scalar_name_of(const std::string& attribute) {
+    const std::string name = attribute.substr(1);
+    return name.starts_with('_') && is_name_of_own(name) ? name.substr(1) : name;
+}
+
 std::string free_scalar_name(const std::string& wanted, const MeshData& data) {
     const auto is_taken = [&](const std::string& name) {
         return std::ranges::any_of(data.scalars, [&](const ScalarArray& s) { return s.name == name; });
@@ -45,7 +64,7 @@ GltfValues values_for_gltf(const MeshData& data) {
     GltfValues values;
     if (data.V.empty()) return values;
     for (const ScalarArray& scalar : data.scalars)
-        if (holds_scalar(data, scalar)) values["_" + scalar.name] = scalar.values;
+        if (holds_scalar(data, scalar)) values[attribute_name(scalar.name)] = scalar.values;
     if (!data.I.empty()) values[gltf_intensity_name] = data.I;
     if (!data.L.empty() && holds_labels(data)) values[gltf_label_name] = data.L.cast<float>();
     return values;
@@ -86,7 +105,7 @@ void add_gltf_values(const std::string& attribute, const ArrayXf::Dense& values,
         data.I = Array1f::Dense(values.col(0));
         if (!rounding.empty()) warn_of_rounded_intensities(path.string(), rounding[0]);
     } else {
-        const std::string name = attribute.substr(1);
+        const std::string name = scalar_name_of(attribute);
         for (Eigen::Index i = 0; i < values.cols(); ++i) {
             const std::string own = values.cols() == 1 ? name : fmt::format("{}_{}", name, i);
             data.scalars.push_back({free_scalar_name(own, data), Array1f::Dense(values.col(i)), true});
