@@ -310,6 +310,7 @@ TEST(Annotation, ShortenedTitlesAreToldApart) {
     for (const Titles& titles :
          {Titles{"error (ours)", "error (baseline)"},
           {"distance to the scan in mm, before", "distance to the scan in mm, after"},
+          {"h (mesh/icosphere 1)", "h (mesh/icosphere 2)"},
           {"Abstand: \u00e4u\u00dferer Rand \u00e4", "Abstand: \u00e4u\u00dferer Rand \u00f6"},
           {"signed distance along normals of A", "signed distance along normals of B, filtered"}}) {
         const auto drawn = [&](size_t first) {
@@ -429,6 +430,27 @@ TEST(Annotation, BarsOfTheSameTitleNameTheirObjects) {
     EXPECT_EQ(titles(), (Titles{"error (ours + 1 more)", "error (theirs)"}));
     scene.objects.erase(scene.objects.begin() + 1);
     EXPECT_EQ(titles(), (Titles{"error (ours)", "error (theirs)"}));
+}
+
+TEST(Annotation, BarsOfObjectsOfTheSameNameHaveNumbers) {
+    SceneSnapshot scene;
+    const auto add = [&](const char* name, float largest) {
+        MeshData mesh;
+        mesh.V = Array3f(Array3f::Dense::Zero(2, 3));
+        mesh.scalars = {{"h", Array1f(Array1f::Dense{{0.0f}, {largest}})}};
+        scene.objects.push_back({name, std::make_shared<const MeshData>(mesh), Eigen::Affine3d::Identity()});
+    };
+    add("mesh/ball", 1);
+    add("mesh/ball", 2);
+    add("mesh/ball 2", 3);
+    add("mesh/box", 4);
+    InferredSettings settings;
+    settings.camera.up = "+y";
+    settings.annotation.colorbar = true;
+    std::vector<std::string> titles;
+    for (const ColorBar& bar : annotation_of(scene, settings).bars) titles.push_back(bar.title);
+    EXPECT_EQ(titles, (std::vector<std::string>{"h (mesh/ball 1)", "h (mesh/ball 3)", "h (mesh/ball 2)",
+                                                "h (mesh/box)"}));
 }
 
 TEST(Annotation, InfiniteValuesGoOnBeyondTheBar) {

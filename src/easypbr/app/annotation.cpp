@@ -67,15 +67,35 @@ void count_infinite(const Array1f& values, ValueRange& range) {
     if ((values.array() == -infinite).any()) range.data_min = -infinite;
 }
 
+/// The objects' names; those of equal names have a number behind them that makes no other object's name.
+std::vector<std::string> distinct_names(const std::vector<SceneSnapshot::Object>& objects) {
+    std::map<std::string, int> uses;
+    for (const SceneSnapshot::Object& object : objects) ++uses[object.name];
+    std::map<std::string, int> numbers;
+    std::vector<std::string> names;
+    for (const SceneSnapshot::Object& object : objects) {
+        std::string name = object.name;
+        if (uses.at(name) > 1) {
+            do name = fmt::format("{} {}", object.name, ++numbers[object.name]);
+            while (uses.contains(name));
+        }
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
 /// Gathers what the objects of a scene have in common.
 class Collector {
   public:
     Collector(const SceneSnapshot& scene, const InferredSettings& settings) : settings_(settings) {
         const Vec3d up = parse_up(settings.camera.up);
-        for (const SceneSnapshot::Object& object : scene.objects) {
+        if (settings.annotation.colorbar) names_ = distinct_names(scene.objects);
+        for (size_t i = 0; i < scene.objects.size(); ++i) {
+            const SceneSnapshot::Object& object = scene.objects[i];
             const DrawStyle style = resolve_style(*object.mesh, settings.style);
             if (!style.visible || object.mesh->V.empty()) continue;
-            add(object, plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up));
+            add(i, *object.mesh,
+                plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up));
         }
     }
 
@@ -109,11 +129,12 @@ class Collector {
         }
     };
 
-    void add(const SceneSnapshot::Object& object, const ColorPlan& plan) {
-        if (plan.by == ColorBy::label && settings_.annotation.legend) add_labels(*object.mesh);
+    /// `object`: its place in the scene.
+    void add(size_t object, const MeshData& mesh, const ColorPlan& plan) {
+        if (plan.by == ColorBy::label && settings_.annotation.legend) add_labels(mesh);
         const bool has_values =
             plan.by == ColorBy::scalar || plan.by == ColorBy::height || plan.by == ColorBy::intensity;
-        if (has_values && settings_.annotation.colorbar) add_bar(object, plan);
+        if (has_values && settings_.annotation.colorbar) add_bar(names_[object], mesh, plan);
     }
 
     void add_labels(const MeshData& mesh) {
@@ -123,8 +144,8 @@ class Collector {
         known->second.merge(labels_in(mesh.L));
     }
 
-    void add_bar(const SceneSnapshot::Object& object, const ColorPlan& plan) {
-        const Array1f values = plan_values(*object.mesh, plan);
+    void add_bar(const std::string& object, const MeshData& mesh, const ColorPlan& plan) {
+        const Array1f values = plan_values(mesh, plan);
         ColorBar bar;
         bar.title = settings_.annotation.title.empty() ? title_of(plan) : settings_.annotation.title;
         bar.range = plan_range(values, plan);
@@ -140,7 +161,7 @@ class Collector {
         };
         const auto known = std::ranges::find_if(bars_, same);
         if (known == bars_.end())
-            bars_.push_back({bar, object.name});
+            bars_.push_back({bar, object});
         else
             join(*known, bar);
     }
@@ -158,6 +179,7 @@ class Collector {
     }
 
     const InferredSettings& settings_;
+    std::vector<std::string> names_;                                     ///< of the objects, for bars
     std::vector<std::pair<const LabelMap*, std::set<int32_t>>> labels_;  ///< in the order of the scene
     std::vector<Shared> bars_;
 };

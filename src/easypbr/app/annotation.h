@@ -41,7 +41,8 @@ struct Annotation {
 };
 
 /// What the settings ask for of the visible objects: a legend for each label map, a colour bar for each name,
-/// range, colormap and colour of missing values. Bars of the same title have the name of their object added.
+/// range, colormap and colour of missing values. Bars of the same title have the name of their object added,
+/// with a number where several objects have it.
 Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings);
 
 /// The side of a picture of this size that the annotation takes, beside or above and below, whichever is
