@@ -112,13 +112,16 @@ MeshData read_binary_cloud(const Source& source, const std::vector<BinaryTable>&
 }
 
 struct CloudStream::State {
-    State(const Source& source, std::vector<Element> given) : elements(std::move(given)), cloud(source) {
+    State(const Source& given_source, std::vector<Element> given)
+        : source(given_source), elements(std::move(given)), cloud(source) {
         cloud.add(elements);
         cloud.make_arrays();
     }
 
+    const Source& source;
     const std::vector<Element> elements;
     CloudPlan cloud;
+    Misfits misfits;
     size_t element = 0, row = 0;  ///< what comes next
 };
 
@@ -146,7 +149,7 @@ size_t CloudStream::push(const char* data, size_t size) {
         const size_t stride = smallest_row(element);
         const size_t rows = std::min(element.count - state_->row, (size - used) / stride);
         read_binary_rows(state_->cloud.plans(0)[state_->element], data + used, std::endian::little,
-                         state_->row, rows);
+                         state_->row, rows, state_->misfits);
         used += rows * stride;
         state_->row += rows;
         if (state_->row < element.count) break;
@@ -157,6 +160,7 @@ size_t CloudStream::push(const char* data, size_t size) {
 }
 
 MeshData CloudStream::finish() {
+    state_->misfits.warn(state_->source);
     state_->cloud.recentre_positions();
     return state_->cloud.mesh();
 }

@@ -15,20 +15,36 @@ constexpr size_t record_grain = 1 << 15;
 /// Bytes after which the memory of the rows before is given back.
 constexpr size_t record_slab = size_t(64) << 20;
 
-/// Counts what float32 makes of the values of a block.
-void count_rounding(ValueBlock block, ScalarType type, bool swap, const Rounding& rounding,
-                    RoundingCounts& counts) {
+/// What is counted of a column while its rows are read.
+struct ColumnCounts {
+    RoundingCounts rounding;
+    size_t misfits = 0;
+};
+
+/// Whether a type has numbers that are no integers of 32 bits.
+constexpr bool has_misfits(ScalarType type) {
+    return type > ScalarType::int32;
+}
+
+/// Counts what float32 or an integer makes of the values of a block.
+void count_block(ValueBlock block, ScalarType type, bool swap, const Column& column, ColumnCounts& counts) {
+    const bool are_integers = column.integers && has_misfits(type);
+    if (!column.rounding && !are_integers) return;
+    if (are_integers) block.scale = 1, block.shift = 0;
     std::vector<double> values(block.rows);
     block.out_stride = 1;
     copy_values(block, type, swap, values.data());
-    for (const double value : values) rounding.count(value, counts);
+    if (column.rounding)
+        for (const double value : values) column.rounding->count(value, counts.rounding);
+    if (are_integers)
+        counts.misfits +=
+            size_t(std::ranges::count_if(values, [](double value) { return !is_int32(value); }));
 }
 
-void count_rounding(const ValueBlock& block, ScalarType type, bool swap, const Column& column) {
-    if (!column.rounding) return;
-    RoundingCounts counts;
-    count_rounding(block, type, swap, *column.rounding, counts);
-    column.rounding->add(counts);
+void add_counts(const ColumnCounts& counts, const Property& property, const Column& column,
+                Misfits& misfits) {
+    if (column.rounding) column.rounding->add(counts.rounding);
+    misfits.add(property.name, counts.misfits);
 }
 
 /// Copies a block of scalars to the column's places from `place` on.
@@ -59,14 +75,23 @@ class ElementReader {
                                      element_.count, element_.name, least, room));
         }
         if (const char* end = read_uniform(body)) return end;
+        misfits_.clear();  // Of rows that were read as if all were alike.
         return read_varied(body);
     }
 
+    const Misfits& misfits() const { return misfits_; }
+
   private:
     int64_t list_length(const Property& property, const char* p) const {
+        const ValueBlock block{p, 0, 1, 1, 1};
+        if (*property.count_type == ScalarType::uint32) {
+            uint32_t length = 0;
+            copy_bits(block, swap_, &length);
+            return length;
+        }
         int32_t length = 0;
-        copy_values(ValueBlock{p, 0, 1, 1, 1}, *property.count_type, swap_, &length);
-        return *property.count_type == ScalarType::uint32 ? int64_t(uint32_t(length)) : int64_t(length);
+        copy_values(block, *property.count_type, swap_, &length);
+        return length;
     }
 
     size_t checked_length(const Property& property, const char* p) const {
@@ -135,8 +160,7 @@ class ElementReader {
         allocate(column.values);
     }
 
-    bool read_uniform_rows(const char* body, const std::vector<size_t>& widths, size_t begin,
-                           size_t end) const {
+    bool read_uniform_rows(const char* body, const std::vector<size_t>& widths, size_t begin, size_t end) {
         const size_t stride = widths.back();
         const char* in = body + begin * stride;
         for (size_t i = 0; i < element_.properties.size(); ++i) {
@@ -154,7 +178,9 @@ class ElementReader {
                                    column.scale,
                                    column.shift};
             copy_scalars(block, property.type, swap_, column, begin * column.stride);
-            count_rounding(block, property.type, swap_, column);
+            ColumnCounts counts;
+            count_block(block, property.type, swap_, column, counts);
+            add_counts(counts, property, column, misfits_);
             if (column.indices)
                 copy_values(block, property.type, swap_, column.indices->values.data() + begin * widths[i]);
             if (column.values)
@@ -202,10 +228,10 @@ class ElementReader {
         }
         parallel_chunks(element_.count, record_grain, [&](size_t begin, size_t end) {
             const char* in = starts[begin / record_grain];
-            std::vector<RoundingCounts> counts(plan_.columns.size());
+            std::vector<ColumnCounts> counts(plan_.columns.size());
             for (size_t row = begin; row < end; ++row) in = read_row(in, row, counts);
             for (size_t i = 0; i < counts.size(); ++i)
-                if (plan_.columns[i].rounding) plan_.columns[i].rounding->add(counts[i]);
+                add_counts(counts[i], element_.properties[i], plan_.columns[i], misfits_);
             progress_.advance(size_t(in - starts[begin / record_grain]));
         });
         return p;
@@ -245,7 +271,7 @@ class ElementReader {
         add(column.values);
     }
 
-    const char* read_row(const char* in, size_t row, std::vector<RoundingCounts>& counts) const {
+    const char* read_row(const char* in, size_t row, std::vector<ColumnCounts>& counts) const {
         for (size_t i = 0; i < element_.properties.size(); ++i) {
             const Property& property = element_.properties[i];
             const Column& column = plan_.columns[i];
@@ -256,7 +282,7 @@ class ElementReader {
             }
             const ValueBlock block{in, 0, 1, width, 0, column.scale, column.shift};
             copy_scalars(block, property.type, swap_, column, row * column.stride);
-            if (column.rounding) count_rounding(block, property.type, swap_, *column.rounding, counts[i]);
+            count_block(block, property.type, swap_, column, counts[i]);
             if (column.indices)
                 copy_values(block, property.type, swap_,
                             column.indices->values.data() + column.indices->first[row]);
@@ -273,6 +299,7 @@ class ElementReader {
     ElementPlan& plan_;
     const Element& element_;
     Progress& progress_;
+    Misfits misfits_;
 };
 
 }  // namespace
@@ -288,23 +315,28 @@ void read_binary_elements(const Source& source, const char* body, std::endian en
                           std::vector<ElementPlan>& plans) {
     Progress progress(source, size_t(source.end() - body));
     for (ElementPlan& plan : plans) {
-        body = ElementReader(source, endian, plan, progress).read(body);
+        ElementReader reader(source, endian, plan, progress);
+        body = reader.read(body);
         source.release_until(body);
+        reader.misfits().warn(source);
     }
 }
 
 void read_binary_rows(const ElementPlan& plan, const char* data, std::endian endian, size_t first,
-                      size_t count) {
+                      size_t count, Misfits& misfits) {
     const bool swap = endian != std::endian::native;
     const size_t stride = smallest_row(*plan.element);
     parallel_chunks(count, record_grain, [&](size_t begin, size_t end) {
         const char* in = data + begin * stride;
         for (size_t i = 0; i < plan.columns.size(); ++i) {
-            const ScalarType type = plan.element->properties[i].type;
+            const Property& property = plan.element->properties[i];
+            const ScalarType type = property.type;
             const Column& column = plan.columns[i];
             const ValueBlock block{in, stride, end - begin, 1, column.stride, column.scale, column.shift};
             copy_scalars(block, type, swap, column, (first + begin) * column.stride);
-            count_rounding(block, type, swap, column);
+            ColumnCounts counts;
+            count_block(block, type, swap, column, counts);
+            add_counts(counts, property, column, misfits);
             in += size_of(type);
         }
     });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/io/source/source.h"
+#include "easypbr/io/tables/misfits.h"
 #include "easypbr/io/tables/polygons.h"
 #include "easypbr/scene/rounding.h"
 
@@ -50,8 +51,9 @@ struct Column {
     /// Scalar target: row i goes to floats[i * stride] as value * scale + shift, computed in double
     /// precision.
     float* floats = nullptr;
-    double* doubles = nullptr;    ///< the same; binary only
-    int32_t* integers = nullptr;  ///< scalar target without scale: what does not fit becomes -1
+    double* doubles = nullptr;  ///< the same; binary only
+    /// Scalar target without scale: what is no integer of 32 bits becomes -1, and a warning counts it.
+    int32_t* integers = nullptr;
     /// Scalar target of types of 4 bytes: the number's bits. In text those of an integer or, where it is
     /// written as such, of a float.
     uint32_t* bits = nullptr;
@@ -79,9 +81,10 @@ size_t smallest_row(const Element& element);
 void read_binary_elements(const Source& source, const char* body, std::endian endian,
                           std::vector<ElementPlan>& plans);
 
-/// Reads `count` rows without lists, from row `first` on, that lie at `data`.
+/// Reads `count` rows without lists, from row `first` on, that lie at `data`. Counts in `misfits`, for the
+/// caller's warning.
 void read_binary_rows(const ElementPlan& plan, const char* data, std::endian endian, size_t first,
-                      size_t count);
+                      size_t count, Misfits& misfits);
 
 /// How rows of text are written: one per line, numbers between blanks.
 struct TextStyle {

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 
-#include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/source/text_scanner.h"
@@ -63,9 +61,6 @@ bool skip_word(const char*& p, const char* end, const TextStyle& style) {
     return p != first;
 }
 
-/// How many values of a property are no integers.
-using Misfits = std::map<std::string, size_t>;
-
 class ChunkReader {
   public:
     ChunkReader(const Source& source, const TextChunk& chunk, const TextStyle& style,
@@ -78,7 +73,7 @@ class ChunkReader {
     }
 
     /// Values of columns of integers that are none or do not fit.
-    const Misfits& misfits() const { return misfits_; }
+    const MisfitCounts& misfits() const { return misfits_; }
 
     ChunkLists read() {
         size_t plan = 0, row = chunk_.first_row;
@@ -192,7 +187,7 @@ class ChunkReader {
         // What saturated, too.
         p = start;
         const double real = number<double>(p, property);
-        if (real >= INT32_MIN && real <= INT32_MAX && std::floor(real) == real) return int32_t(real);
+        if (is_int32(real)) return int32_t(real);
         ++misfits_[property.name];
         return -1;
     }
@@ -220,7 +215,7 @@ class ChunkReader {
     const std::vector<ElementPlan>& plans_;
     ChunkLists lists_;
     std::vector<std::vector<RoundingCounts>> rounding_;  ///< per plan and column
-    Misfits misfits_;
+    MisfitCounts misfits_;
 };
 
 /// Joins one column's lists of all chunks.
@@ -250,15 +245,6 @@ void join_lists(const Source& source, const std::vector<ChunkLists>& chunks, siz
     for (size_t row = 0; row < list.rows && uniform; ++row)
         uniform = list.first[row + 1] == list.width * (row + 1);
     if (uniform) list.first.clear();
-}
-
-void warn_of_misfits(const Source& source, const std::vector<Misfits>& chunks) {
-    Misfits all;
-    for (const Misfits& misfits : chunks)
-        for (const auto& [name, count] : misfits) all[name] += count;
-    for (const auto& [name, count] : all)
-        log_warning(fmt::format("{}: {} values of '{}' are no integers of 32 bits and become -1",
-                                source.path.string(), count, name));
 }
 
 }  // namespace
@@ -293,19 +279,19 @@ void read_text_elements(const Source& source, const TextRows& rows, std::vector<
                      fmt::format("{} rows expected, but the file ends after {}", expected, rows.count()));
 
     std::vector<ChunkLists> lists(chunks.size());
-    std::vector<Misfits> misfits(chunks.size());
+    Misfits misfits;
     Progress progress(source, size_t(source.end() - rows.body));
     for (size_t first = 0; first < chunks.size(); first += chunk_slab) {
         parallel_for(std::min(chunk_slab, chunks.size() - first), 1, [&](size_t i) {
             const TextChunk& chunk = chunks[first + i];
             ChunkReader reader(source, chunk, rows.style, plans);
             lists[first + i] = reader.read();
-            misfits[first + i] = reader.misfits();
+            misfits.add(reader.misfits());
             progress.advance(size_t(chunk.end - chunk.begin));
         });
         source.release_until(chunks[first].begin);
     }
-    warn_of_misfits(source, misfits);
+    misfits.warn(source);
     for (size_t plan = 0; plan < plans.size(); ++plan) {
         for (size_t i = 0; i < plans[plan].columns.size(); ++i) {
             const Column& column = plans[plan].columns[i];

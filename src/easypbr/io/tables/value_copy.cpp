@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "easypbr/io/tables/misfits.h"
+
 namespace easypbr::io {
 namespace {
 
@@ -31,16 +33,15 @@ T load_value(const char* p) {
     return std::bit_cast<T>(bytes);
 }
 
-/// Conversion to an index or label; what does not fit becomes -1, which no index check lets pass.
+/// Conversion to an index or label; what is no integer of 32 bits becomes -1.
 template <class To, class From>
 To convert(From value) {
-    if constexpr (std::is_floating_point_v<To> || (std::is_integral_v<From> && sizeof(From) <= 4)) {
+    if constexpr (std::is_floating_point_v<To>) {
         return To(value);
     } else if constexpr (std::is_integral_v<From>) {
         return std::in_range<To>(value) ? To(value) : To(-1);
     } else {
-        const double real = double(value);
-        return real >= -2147483648.0 && real < 2147483648.0 ? To(real) : To(-1);
+        return is_int32(double(value)) ? To(double(value)) : To(-1);
     }
 }
 

@@ -17,7 +17,7 @@ struct ValueBlock {
 };
 
 /// Copies the block; `swap`: its numbers are in the other byte order than this machine's. To is float, double
-/// or int32_t, where what does not fit becomes -1.
+/// or int32_t, where what is no integer of 32 bits becomes -1.
 template <class To>
 void copy_values(const ValueBlock& block, ScalarType type, bool swap, To* out);
 

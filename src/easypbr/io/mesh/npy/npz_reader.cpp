@@ -71,7 +71,8 @@ template <class Values>
 Values values_of(const NamedArray& named, Rounding* rounding = nullptr) {
     const NpyArray& array = named.array;
     Values values(Eigen::Index(array.rows() * array.columns()));
-    const std::vector<Element> elements = array.elements(std::vector<std::string>(array.columns(), "_"));
+    const std::vector<Element> elements =
+        array.elements(std::vector<std::string>(array.columns(), named.name));
     std::vector<ElementPlan> plans;
     size_t next = 0;
     for (const Element& element : elements) {
