@@ -11,6 +11,7 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "io/bytes.h"
 #include "io/ply_builder.h"
+#include "io/same_bits.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::splat_files_test {
@@ -132,6 +133,32 @@ TEST(SplatFiles, WrittenAndReadPlyIsTheSame) {
     // log() and exp() of single precision.
     EXPECT_TRUE(back->splats.scales.isApprox(mesh.splats.scales, 1e-6f));
     EXPECT_TRUE(back->splats.opacities.isApprox(mesh.splats.opacities, 1e-6f));
+}
+
+TEST(SplatFiles, ScalarsMayHaveTheNamesOfSplats) {
+    MeshData cloud;
+    cloud.V = Array3f::Dense(Array3f::Dense::Random(2, 3));
+    std::vector<std::string> names = property_names(1);
+    for (const char* name : {"f_rest_9", "packed_position", "packed_rotation", "packed_scale", "packed_color",
+                             "_opacity", "Opacity"})
+        names.emplace_back(name);
+    std::erase_if(names, [](const std::string& name) { return name.size() == 1 || name.starts_with("n"); });
+    for (const std::string& name : names)
+        cloud.scalars.push_back({name, Array1f::Dense(Array1f::Dense::Random(2))});
+    MeshData splats = cloud;
+    splats.splats = read(ply_of("ascii", property_names(1))).splats;
+    const TemporaryFolder folder;
+    for (const MeshData* mesh : {&cloud, &splats})
+        for (const char* file : {"a.ply", "a.csv", "a.pcd", "a.npy", "a.npz"}) {
+            if (mesh == &splats && std::string(file) != "a.ply") continue;  // They have no splats.
+            io::save_mesh(Mesh(*mesh), folder.path() / file);
+            const auto back = io::load_mesh(folder.path() / file).snapshot();
+            EXPECT_TRUE(same_bits(back->splats.sh, mesh->splats.sh)) << file;
+            ASSERT_EQ(back->scalars.size(), names.size()) << file;
+            for (size_t i = 0; i < names.size(); ++i)
+                EXPECT_TRUE(same_bits(scalar_named(*back, names[i]).values, mesh->scalars[i].values))
+                    << file << " " << names[i];
+        }
 }
 
 TEST(SplatFiles, WrittenExtremesAreFinite) {

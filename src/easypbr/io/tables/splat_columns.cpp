@@ -10,6 +10,7 @@
 
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/tables/splat_names.h"
 #include "easypbr/scene/splat_basis.h"
 
 namespace easypbr::io {
@@ -35,7 +36,7 @@ const VertexField& require(const Source& source, const std::vector<VertexField>&
 
 size_t count_rest(const Source& source, const std::vector<VertexField>& fields) {
     const auto count = size_t(std::ranges::count_if(
-        fields, [](const VertexField& field) { return field.property.name.starts_with("f_rest_"); }));
+        fields, [](const VertexField& field) { return field.property.name.starts_with(harmonic_prefix); }));
     if (std::ranges::find(rest_counts, count) == rest_counts.end())
         fail(source, fmt::format("splats have 0, 9, 24 or 45 properties f_rest_N, for spherical harmonics of "
                                  "degree 0 to 3; found {}",

@@ -14,6 +14,7 @@
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/attributes.h"
+#include "easypbr/io/tables/splat_names.h"
 #include "easypbr/scene/color_range.h"
 #include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/offset.h"
@@ -72,8 +73,8 @@ bool has_name(const Spellings& spellings, std::string_view name) {
 
 /// Whether a reader would see another meaning in a field that is called as scalars are, or another name.
 bool is_reserved(std::string_view name) {
-    return is_known_field(name) || has_name(array_names, name) || without_prefix(name) != name ||
-           (name.starts_with('_') && is_reserved(name.substr(1)));
+    return is_known_field(name) || has_name(array_names, name) || is_splat_name(name) ||
+           without_prefix(name) != name || (name.starts_with('_') && is_reserved(name.substr(1)));
 }
 
 /// Places of the first of several spellings of which all fields are there and free.

@@ -10,13 +10,15 @@
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/splat_columns.h"
+#include "easypbr/io/tables/splat_names.h"
 #include "easypbr/io/tables/splat_rows.h"
 
 namespace easypbr::io {
 namespace {
 
 constexpr size_t chunk_splats = 256, packed_grain = 1 << 14;
-constexpr const char* packed_position = "packed_position";
+constexpr auto packed_position = packed_splat_names[0], packed_rotation = packed_splat_names[1],
+               packed_scale = packed_splat_names[2], packed_color = packed_splat_names[3];
 
 /// Where a property of an element lies in the file.
 struct PackedColumn {
@@ -50,7 +52,7 @@ class PackedTable {
     size_t count() const { return element_.count; }
     const char* end() const { return begin_ + element_.count * stride_; }
 
-    std::optional<PackedColumn> find(const std::string& name, ScalarType type) const {
+    std::optional<PackedColumn> find(std::string_view name, ScalarType type) const {
         size_t place = 0;
         for (const Property& property : element_.properties) {
             if (property.name == name && property.type == type) return PackedColumn{begin_ + place, stride_};
@@ -59,7 +61,7 @@ class PackedTable {
         return std::nullopt;
     }
 
-    PackedColumn require(const std::string& name, ScalarType type) const {
+    PackedColumn require(std::string_view name, ScalarType type) const {
         if (const auto column = find(name, type)) return *column;
         fail(source_, fmt::format("packed splats: element '{}' has no property '{}' of the expected type",
                                   element_.name, name));
@@ -129,8 +131,8 @@ class PackedReader {
                                       chunk_splats, chunks_->count()));
         plan_harmonics(count);
         SplatRows rows(source_, count, degree_);
-        const PackedColumn position = packed(packed_position), rotation = packed("packed_rotation"),
-                           scale = packed("packed_scale"), color = packed("packed_color");
+        const PackedColumn position = packed(packed_position), rotation = packed(packed_rotation),
+                           scale = packed(packed_scale), color = packed(packed_color);
         const ChunkBounds positions{*required({"min_x", "min_y", "min_z", "max_x", "max_y", "max_z"})};
         const ChunkBounds scales{*required(
             {"min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z"})};
@@ -155,7 +157,7 @@ class PackedReader {
     }
 
   private:
-    PackedColumn packed(const char* name) const { return splats_->require(name, ScalarType::uint32); }
+    PackedColumn packed(std::string_view name) const { return splats_->require(name, ScalarType::uint32); }
 
     std::optional<std::array<PackedColumn, 6>> required(const std::array<const char*, 6>& names) const {
         const auto columns = chunks_->floats<6>(names);
