@@ -202,6 +202,12 @@ TEST(Xyz, LabelsThatAreNoneAreCounted) {
     EXPECT_NE(warnings[0].find("2 values of 'label' are no integers"), std::string::npos) << warnings[0];
 }
 
+TEST(Xyz, InfiniteColorsAreFullOrNone) {
+    const MeshData mesh = read("x y z red green blue\n0 0 0 inf .5 -inf\n1 0 0 .25 1 0\n", "test.xyz");
+    EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(1, 0.5f, 0));
+    EXPECT_EQ(Vec3(mesh.C.row(1)), Vec3(0.25f, 1, 0));
+}
+
 TEST(Xyz, PtsHasItsCount) {
     EXPECT_EQ(read("2\n1 2 3\n4 5 6\n", "a.pts").V.rows(), 2);
     EXPECT_EQ(read("1\n1 2 3\n4 5 6\n", "a.pts").V.rows(), 1);

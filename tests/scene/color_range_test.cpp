@@ -50,4 +50,13 @@ TEST(ColorRange, TellsWhatFullIntensityIs) {
     EXPECT_TRUE(C.isApprox(row(1, 0.2f, 0), 1e-6f));
 }
 
+TEST(ColorRange, InfiniteNumbersDoNotDarkenTheOthers) {
+    ArrayXf::Dense C = row(infinity, 0.5f, -infinity);
+    normalize_colors(C);
+    EXPECT_EQ(C, row(infinity, 0.5f, -infinity));
+    C = row(infinity, 51, 255);
+    normalize_colors(C);
+    EXPECT_EQ(C, row(infinity, 0.2f, 1));
+}
+
 }  // namespace easypbr::color_range_test

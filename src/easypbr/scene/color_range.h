@@ -15,7 +15,7 @@ ColorRange range_of_colors(const ArrayXf::Dense& C);
 /// and products of colours, and what was rounded), 255 if none is larger, else 65535.
 float white_of(const ColorRange& range);
 
-/// Divides by white_of(), in parallel.
+/// Divides by white_of() the range of the finite numbers, in parallel; infinite ones stay as they are.
 void normalize_colors(ArrayXf::Dense& C);
 
 }  // namespace easypbr
