@@ -108,6 +108,24 @@ TEST(CloudFiles, KeepTheOffset) {
     }
 }
 
+TEST(CloudFiles, ColorsOfDarkCloudsStayDark) {
+    const TemporaryFolder folder;
+    // All bytes are 0, or at most 1, where numbers alone would be full intensity; or one more.
+    for (const int most : {0, 1, 2})
+        for (const int columns : {3, 4}) {
+            MeshData mesh = cloud(4);
+            mesh.C = ArrayXf::Dense(ArrayXf::Dense::NullaryExpr(
+                4, columns, [&](auto i, auto k) { return (i + k) % 2 ? float(most) / 255 : 0.0f; }));
+            for (const char* name : {"c.xyz", "c.txt", "c.asc", "c.csv", "c.ply", "c.npy"}) {
+                io::save_mesh(Mesh(mesh), folder / name);
+                const auto back = io::load_mesh(folder / name).snapshot();
+                ASSERT_EQ(back->C.cols(), columns) << name;
+                // One rounding of the quotient in the file, one of that here.
+                EXPECT_LE((mesh.C - back->C).cwiseAbs().maxCoeff(), 1e-9f) << name << " up to " << most;
+            }
+        }
+}
+
 TEST(CloudFiles, NpzKeepsFacesEdgesAndTheirValues) {
     const TemporaryFolder folder;
     MeshData mesh = cloud(10);

@@ -61,7 +61,7 @@ std::string encode_pcd(const MeshData& mesh) {
 }
 
 std::string encode_xyz(const MeshData& mesh, char delimiter) {
-    const std::vector<RowPart> parts = vertex_row_parts(mesh);
+    const std::vector<RowPart> parts = vertex_row_parts(mesh, {.has_types = false});
     std::string out = delimiter == ',' ? "" : "# ";
     for (const RowPart& part : parts)
         for (const std::string& name : part.names) out += name + delimiter;

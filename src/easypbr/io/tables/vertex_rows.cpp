@@ -12,6 +12,7 @@
 #include "easypbr/core/markup.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/vertex_arrays.h"
+#include "easypbr/scene/color_range.h"
 
 namespace easypbr::io {
 namespace {
@@ -41,9 +42,17 @@ uint8_t color_code(float value) {
     return uint8_t(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
 }
 
-RowPart color_part(const ArrayXf& C) {
+RowPart color_part(const ArrayXf& C, bool has_types) {
     std::vector<std::string> names{"red", "green", "blue"};
     if (C.cols() == 4) names.emplace_back("alpha");
+    // Among numbers without types a largest of 1 is full intensity.
+    if (!has_types && color_code(range_of_colors(C).high) == 1)
+        return {std::move(names), ScalarType::float32, [C](Eigen::Index row, char* out) {
+                    for (Eigen::Index k = 0; k < C.cols(); ++k, out += sizeof(float)) {
+                        const float value = float(color_code(C(row, k))) / 255;
+                        std::memcpy(out, &value, sizeof value);
+                    }
+                }};
     return {std::move(names), ScalarType::uint8, [C](Eigen::Index row, char* out) {
                 for (Eigen::Index k = 0; k < C.cols(); ++k) out[k] = char(color_code(C(row, k)));
             }};
@@ -145,7 +154,8 @@ std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& styl
     using Names = std::vector<std::string>;
     add(style.normal_names, ScalarType::float32, mesh.N);
     if (!mesh.C.empty())
-        parts.push_back(style.packed_colors ? packed_color_part(mesh.C) : color_part(mesh.C));
+        parts.push_back(style.packed_colors ? packed_color_part(mesh.C)
+                                            : color_part(mesh.C, style.has_types));
     add(style.uv_names, ScalarType::float32, mesh.UV);
     add(Names{"tx", "ty", "tz"}, ScalarType::float32, mesh.T);
     add(Names{"bitangent_length"}, ScalarType::float32, mesh.B);

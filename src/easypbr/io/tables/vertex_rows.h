@@ -24,11 +24,14 @@ struct RowStyle {
     std::vector<std::string> uv_names{"s", "t"};
     /// Red, green, blue (and alpha) as one number of 4 bytes, "rgb" or "rgba".
     bool packed_colors = false;
+    /// Without types, as in text, the numbers tell what colours range over (see scene/color_range.h).
+    bool has_types = true;
 };
 
 /// All that a mesh has for its vertices: positions (float64, with the offset added, unless that is zero),
-/// normals, colours as bytes, texture coordinates, tangents, bitangent lengths, labels, intensities, scalars.
-/// Names of scalars are scalar_field_names().
+/// normals, colours as bytes (or their fractions of 255, where nothing else tells these from 0 to 1), texture
+/// coordinates, tangents, bitangent lengths, labels, intensities, scalars. Names of scalars are
+/// scalar_field_names().
 std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style = {});
 
 /// What the scalars of a mesh are called in a file: with '_' for what separates names in some format or
