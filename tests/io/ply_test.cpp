@@ -387,6 +387,23 @@ TEST(Ply, ColorsOfVerticesWinOverThoseOfFaces) {
     EXPECT_NE(warnings[0].find("colours of the faces are left out"), std::string::npos) << warnings[0];
 }
 
+TEST(Ply, NamesValuesOfFacesThatTheVerticesHaveToo) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    const MeshData mesh = read(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float quality\nproperty int label\nelement face 1\n"
+        "property list uchar int vertex_indices\nproperty float quality\nproperty float area\n"
+        "property int label\nend_header\n0 0 0 .25 1\n1 0 0 .5 2\n0 1 0 .75 3\n3 0 1 2 9 8 7\n");
+    set_log_sink({});
+    EXPECT_EQ(Vec3(scalar_named(mesh, "quality").values), Vec3(0.25f, 0.5f, 0.75f));
+    EXPECT_EQ(Eigen::Vector3i(mesh.L), Eigen::Vector3i(1, 2, 3));
+    EXPECT_EQ(scalar_named(mesh, "area").values[0], 8);
+    ASSERT_EQ(warnings.size(), 2u);
+    EXPECT_NE(warnings[0].find("'quality' of the faces are left out"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[1].find("labels of the faces are left out"), std::string::npos) << warnings[1];
+}
+
 TEST(Ply, LeavesOutPointsOfCloudsWithoutPosition) {
     std::vector<std::string> warnings;
     set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });

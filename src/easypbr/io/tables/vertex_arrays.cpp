@@ -150,6 +150,11 @@ void warn_of_lost(const Source& source, const std::string& name, const Rounding*
     if (rounding) warn_of_rounding(source.path.string(), name, rounding->counts());
 }
 
+void warn_of_left_out_scalars(const Source& source, const std::string& name) {
+    log_warning(fmt::format("{}: the scalars '{}' of the faces are left out: there are others of that name",
+                            source.path.string(), name));
+}
+
 /// Values that stand for none become NaN.
 void clear_missing(const Property& property, Array1f::Dense& values) {
     if (!property.missing) return;
@@ -300,8 +305,16 @@ void FaceArrays::move_into(MeshData& mesh, const Source& source) {
     if (mesh.F.rows() == 0) return;
     std::set<std::string> taken;
     for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
-    std::erase_if(scalars_, [&](const auto& scalar) { return !taken.insert(scalar.name).second; });
+    std::erase_if(scalars_, [&](const Scalar& scalar) {
+        const bool is_free = taken.insert(scalar.name).second;
+        if (!is_free) warn_of_left_out_scalars(source, scalar.name);
+        return !is_free;
+    });
     const bool has_labels = mesh.L.empty() && L_.size();
+    if (L_.size() && !has_labels)
+        log_warning(
+            fmt::format("{}: the labels of the faces are left out: the vertices have labels of their own",
+                        source.path.string()));
     if (!has_labels && scalars_.empty()) return;
     tell_faces_from_vertices(mesh);
     const auto of_triangles = [&](auto& values) {

@@ -98,8 +98,9 @@ class FaceArrays {
     /// The colours of the polygons, 0 .. 1, without rows where they have none. Leaves none here.
     ArrayXf::Dense take_colors() { return colors_.take(); }
 
-    /// Gives each triangle the values of its polygon; those that the vertices have too are left out. Where
-    /// they would pass for values of the vertices, a vertex is added (tell_faces_from_vertices).
+    /// Gives each triangle the values of its polygon; those that the vertices have too are left out, with a
+    /// warning. Where they would pass for values of the vertices, a vertex is added
+    /// (tell_faces_from_vertices).
     void move_into(MeshData& mesh, const Source& source);
 
   private:
