@@ -453,6 +453,32 @@ TEST(Annotation, BarsOfObjectsOfTheSameNameHaveNumbers) {
                                                 "h (mesh/box)"}));
 }
 
+// Elevations of 2495 to 2505 in a scene whose origin is at 2500.
+TEST(Annotation, BarsOfHeightsHaveTrueNumbers) {
+    MeshData mesh;
+    mesh.V = Array3f(Array3f::Dense{{0, -5, 0}, {1, 5, 0}});
+    mesh.style.color_by = ColorBy::height;
+    SceneSnapshot scene;
+    scene.origin = Vec3d(1e6, 2500, 1e6);
+    scene.objects.push_back({"m", std::make_shared<const MeshData>(mesh), Eigen::Affine3d::Identity()});
+    InferredSettings settings;
+    settings.camera.up = "+y";
+    settings.annotation.colorbar = true;
+    for (const ColorScale scale : {ColorScale::linear, ColorScale::log}) {
+        settings.style.color_scale = scale;
+        const ColorBar bar = annotation_of(scene, settings).bars.at(0);
+        const std::vector<Tick> ticks = ticks_of(bar.range, 3);
+        ASSERT_EQ(ticks.size(), 3u);
+        EXPECT_EQ(ticks[0].text, "2495");
+        EXPECT_EQ(ticks[1].text, "2500");
+        EXPECT_EQ(ticks[2].text, "2505");
+        EXPECT_NEAR(place_of(ticks[0], bar.range), 0, 1e-12);
+        // On the logarithmic scale log(2500 / 2495) / log(2505 / 2495) = 0.5005 of it.
+        EXPECT_NEAR(place_of(ticks[1], bar.range), 0.5, 6e-4);
+        EXPECT_NEAR(place_of(ticks[2], bar.range), 1, 1e-12);
+    }
+}
+
 TEST(Annotation, InfiniteValuesGoOnBeyondTheBar) {
     constexpr float infinite = std::numeric_limits<float>::infinity();
     InferredSettings settings;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/label_colors.h"
@@ -267,6 +268,47 @@ TEST(ElementColors, HeightsAreThoseInTheWorld) {
     const ElementColors heights = element_colors(mesh, z);
     for (int i = 0; i < 4; ++i) EXPECT_NEAR(heights.values(i), 10 + 2 * i, 1e-5);
     EXPECT_NE(z.key, plan_colors(mesh, by(ColorBy::height), DrawMode::mesh, T, -Vec3d::UnitZ()).key);
+}
+
+// A scene's origin takes a part of the heights, which part is up to the order of showing: the numbers are
+// those of both, and the digits those of what is left.
+TEST(ElementColors, HeightsDoNotDependOnTheOrigin) {
+    MeshData mesh = strip();
+    const auto of = [&](double origin, const Style& style) {
+        Eigen::Affine3d T = Eigen::Affine3d::Identity();
+        T.translation().y() = 2500 - origin;
+        const ColorPlan p = plan_colors(mesh, style, DrawMode::points, T, up, Vec3d(0, origin, 0));
+        const ValueRange range = plan_range(plan_values(mesh, p), p);
+        return std::tuple(range.true_min(), range.true_max(), element_colors(mesh, p).colors);
+    };
+    Style style = by(ColorBy::height);
+    // Vertices at 2500 to 2503: all numbers below are whole ones of float32.
+    for (const double origin : {0.0, 2500.0, 2501.0}) {
+        style = by(ColorBy::height);
+        EXPECT_EQ(std::get<0>(of(origin, style)), 2500) << origin;
+        EXPECT_EQ(std::get<1>(of(origin, style)), 2503) << origin;
+        style.color_min = 2499.0f;
+        style.color_max = 2505.0f;
+        EXPECT_EQ(std::get<0>(of(origin, style)), 2499) << origin;
+        EXPECT_EQ(std::get<1>(of(origin, style)), 2505) << origin;
+        EXPECT_EQ(std::get<2>(of(origin, style)), std::get<2>(of(0, style))) << origin;
+        style.color_scale = ColorScale::log;
+        EXPECT_EQ(std::get<0>(of(origin, style)), 2499) << origin;
+        EXPECT_EQ(std::get<2>(of(origin, style)), std::get<2>(of(0, style))) << origin;
+    }
+    // The 0 of a diverging map is a true one: 2500 to 2503 and -2 to 1 are the vertices' heights.
+    style = by(ColorBy::height);
+    style.colormap = Colormap::coolwarm;
+    EXPECT_EQ(std::get<0>(of(2501, style)), 2500);
+    const ColorPlan sunk = plan_colors(mesh, style, DrawMode::points, here, up, Vec3d(0, -2, 0));
+    EXPECT_EQ(plan_range(plan_values(mesh, sunk), sunk).true_min(), -2);
+    EXPECT_EQ(plan_range(plan_values(mesh, sunk), sunk).true_max(), 2);
+    // Of 0.001 at 5,000,000 float32, which tells halves apart there, would leave nothing.
+    mesh.V = Array3f(Array3f::Dense{{0, 0, 0}, {1, 0.001f, 0}, {0, 0.002f, 0}, {-1, 0.003f, 0}});
+    const ColorPlan far =
+        plan_colors(mesh, by(ColorBy::height), DrawMode::points, here, up, Vec3d(0, 5e6, 0));
+    EXPECT_EQ(plan_values(mesh, far)(3), 0.003f);
+    EXPECT_EQ(plan_range(plan_values(mesh, far), far).true_min(), 5e6);
 }
 
 TEST(ElementColors, NormalsAndTextureCoordinatesAreTheirNumbers) {

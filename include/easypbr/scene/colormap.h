@@ -85,12 +85,17 @@ int color_parts(int steps);
 /// How values are spread over a colour map: themselves, or their logarithms.
 enum class ColorScale { linear, log };
 
-/// The values that a colormap is spread over.
+/// The values that a colormap is spread over. All of them, and those that the functions below take, are
+/// relative to `base`, which keeps the digits of large values that lie close to each other.
 struct ValueRange {
     float min = 0, max = 1;                 ///< of the first and the last colour; min < max
     float data_min = 0, data_max = 1;       ///< of all finite values that have a place on the scale
     ColorScale scale = ColorScale::linear;  ///< log: min is above 0
     int parts = 256;                        ///< of the scale, each of one colour: color_parts()
+    double base = 0;                        ///< added to a value gives the true one; log: 0
+
+    double true_min() const { return base + double(min); }
+    double true_max() const { return base + double(max); }
 
     bool clips_below() const { return data_min < min; }
     bool clips_above() const { return data_max > max; }
@@ -119,13 +124,14 @@ inline int color_index(float value, const ValueRange& range) {
 /// percent take less than a third of it; then outliers would leave the rest hardly any colours, and the range
 /// is that of the 1st to the 99th percentile (of up to 2^18 evenly chosen values). `diverging` ranges that
 /// hold 0 reach as far below it as above, so that 0 has the middle colour. One single value is in the middle;
-/// 0 to 1, or 1 to 10, when there is no such value.
+/// 0 to 1, or 1 to 10, when there is no such value. `values` are relative to `base`, which is 0 on a
+/// logarithmic scale; the 0 of diverging ranges is a true one.
 ValueRange automatic_range(const Array1f& values, bool diverging = false,
-                           ColorScale scale = ColorScale::linear);
+                           ColorScale scale = ColorScale::linear, double base = 0);
 
-/// As far as they are given, `min` and `max` replace the automatic range's. Throws ArgumentError when the
-/// result is empty, and for an end of a logarithmic scale that is not above 0.
+/// As far as they are given, `min` and `max`, true values, replace the automatic range's. Throws ArgumentError
+/// when the result is empty, and for an end of a logarithmic scale that is not above 0.
 ValueRange value_range(const Array1f& values, std::optional<float> min, std::optional<float> max,
-                       bool diverging = false, ColorScale scale = ColorScale::linear);
+                       bool diverging = false, ColorScale scale = ColorScale::linear, double base = 0);
 
 }  // namespace easypbr

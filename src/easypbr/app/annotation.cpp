@@ -95,7 +95,7 @@ class Collector {
             const DrawStyle style = resolve_style(*object.mesh, settings.style);
             if (!style.visible || object.mesh->V.empty()) continue;
             add(i, *object.mesh,
-                plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up));
+                plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up, scene.origin));
         }
     }
 
@@ -157,7 +157,8 @@ class Collector {
                 other.bar.nan_color && bar.nan_color && *other.bar.nan_color != *bar.nan_color;
             return !differ && other.bar.title == bar.title && other.bar.range.min == bar.range.min &&
                    other.bar.range.max == bar.range.max && other.bar.range.scale == bar.range.scale &&
-                   other.bar.range.parts == bar.range.parts && other.bar.table == bar.table;
+                   other.bar.range.base == bar.range.base && other.bar.range.parts == bar.range.parts &&
+                   other.bar.table == bar.table;
         };
         const auto known = std::ranges::find_if(bars_, same);
         if (known == bars_.end())
@@ -314,20 +315,23 @@ std::vector<Tick> ticks_with_text(const std::vector<LogTick>& log_ticks) {
 bool has_room(const std::vector<Tick>& ticks, const ValueRange& range, int most) {
     for (size_t i = 1; i < ticks.size(); ++i)
         // Not a number where a tick is 0, just below the range.
-        if (!(place_on_scale(ticks[i].value, range) - place_on_scale(ticks[i - 1].value, range) >=
-              1.0 / (most + 1)))
-            return false;
+        if (!(place_of(ticks[i], range) - place_of(ticks[i - 1], range) >= 1.0 / (most + 1))) return false;
     return true;
 }
 
 }  // namespace
 
+double place_of(const Tick& tick, const ValueRange& range) {
+    return place_on_scale(tick.value - range.base, range);
+}
+
 std::vector<Tick> ticks_of(const ValueRange& range, int most) {
     most = std::max(1, most);
-    const std::vector<Tick> linear = ticks_of(double(range.min), double(range.max), most);
+    const std::vector<Tick> linear = ticks_of(range.true_min(), range.true_max(), most);
     if (range.scale == ColorScale::linear) return linear;
     constexpr size_t enough = 3;  // of 1, 2 and 5, before other ticks are looked for
-    const std::vector<LogTick> fine = log_ticks(range.min, range.max), powers = powers_of_ten(fine);
+    const std::vector<LogTick> fine = log_ticks(range.true_min(), range.true_max()),
+                               powers = powers_of_ten(fine);
     if (fine.size() >= enough && fine.size() <= size_t(most)) return ticks_with_text(fine);
     if (linear.size() > 1 && has_room(linear, range, most)) return linear;
     if (powers.size() > 1) return ticks_with_text(thinned(powers, size_t(most)));

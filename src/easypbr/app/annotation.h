@@ -61,7 +61,7 @@ void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings
                      Image& picture);
 
 struct Tick {
-    double value = 0;
+    double value = 0;  ///< the true one (see ValueRange)
     std::string text;  ///< all of a bar in one format, with as many digits as tell them apart
 };
 /// Multiples of a round distance, 1, 2 or 5 times a power of ten, from `min` to `max` (larger): at most
@@ -70,5 +70,7 @@ std::vector<Tick> ticks_of(double min, double max, int most);
 /// Of a logarithmic scale 1, 2 and 5 times powers of ten where `most` is enough for all of them, else powers
 /// of ten; those of a linear scale, or two of them, where the range holds hardly any of these.
 std::vector<Tick> ticks_of(const ValueRange& range, int most);
+/// place_on_scale() of a tick.
+double place_of(const Tick& tick, const ValueRange& range);
 
 }  // namespace easypbr::app

@@ -259,8 +259,8 @@ struct BarLayout {
     std::vector<Tick> ticks;
 };
 
-int tick_row(const BarLayout& layout, const ValueRange& range, double value) {
-    const double t = place_on_scale(value, range);
+int tick_row(const BarLayout& layout, const ValueRange& range, const Tick& tick) {
+    const double t = place_of(tick, range);
     const int row = int(std::lround((1 - t) * layout.height - 0.5));
     return layout.top + std::clamp(row, 0, layout.height - 1);
 }
@@ -278,7 +278,7 @@ void draw_bar(Pen& pen, const ColorBar& bar, const BarLayout& layout, int x, int
                    false);
     const int row_pixels = pen.px(row_height);
     for (const Tick& tick : layout.ticks) {
-        const int at = y + tick_row(layout, bar.range, tick.value);
+        const int at = y + tick_row(layout, bar.range, tick);
         pen.canvas().fill({x + layout.bar, at, layout.tick, std::max(1, pen.px(tick_width))}, pen.ink());
         pen.write(tick.text, x + layout.text_x, at - row_pixels / 2, row_pixels);
     }

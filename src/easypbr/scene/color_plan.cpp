@@ -110,7 +110,7 @@ class Planner {
         plan_.mode = mode;
     }
 
-    ColorPlan plan(const Eigen::Affine3d& T_world_mesh, const Vec3d& up) {
+    ColorPlan plan(const Eigen::Affine3d& T_world_mesh, const Vec3d& up, const Vec3d& origin) {
         const std::optional<ColorBy> by = chosen();
         plan_.by = by.value_or(natural_choice(mesh_, mode_));
         // Nobody chose: textures and vertex colours count together, as glTF has it.
@@ -123,7 +123,7 @@ class Planner {
             case ColorBy::scalar:
             case ColorBy::height:
             case ColorBy::intensity:
-                decide_values(T_world_mesh, up);
+                decide_values(T_world_mesh, up, origin);
                 break;
             case ColorBy::normal:
                 decide_normals(T_world_mesh);
@@ -195,7 +195,7 @@ class Planner {
         add_to_key(mesh_.label_map ? mesh_.label_map->revision() : 0, mesh_.F.revision());
     }
 
-    void decide_values(const Eigen::Affine3d& T_world_mesh, const Vec3d& up) {
+    void decide_values(const Eigen::Affine3d& T_world_mesh, const Vec3d& up, const Vec3d& origin) {
         plan_.exact = true;
         plan_.colormap = style(&Style::colormap)
                              .value_or(plan_.by == ColorBy::intensity ? Colormap::grey : Colormap::viridis);
@@ -205,7 +205,7 @@ class Planner {
         plan_.max = style(&Style::color_max);
         const Vec3 missing = plan_.colormap.is_grey() ? Vec3(1, 0, 1) : Vec3(0.5f, 0.5f, 0.5f);
         plan_.nan_color = style(&Style::nan_color).value_or(missing);
-        decide_array(T_world_mesh, up);
+        decide_array(T_world_mesh, up, origin);
         if (interpolates() && plan_.element == PerElement::vertex) plan_.source = ColorSource::values;
         plan_.key += ' ' + plan_.colormap.text();
         add_to_key(plan_.scale, plan_.steps, plan_.min.value_or(NAN), plan_.max.value_or(NAN),
@@ -213,7 +213,7 @@ class Planner {
     }
 
     /// The array that the values come from, and the height's direction.
-    void decide_array(const Eigen::Affine3d& T_world_mesh, const Vec3d& up) {
+    void decide_array(const Eigen::Affine3d& T_world_mesh, const Vec3d& up, const Vec3d& origin) {
         if (plan_.by == ColorBy::scalar) {
             const Array1f& values = scalar_named(mesh_, plan_.scalar).values;
             plan_.element = drawn_as(element_of(mesh_, values.rows()));
@@ -224,8 +224,10 @@ class Planner {
         } else {
             plan_.height.head<3>() = T_world_mesh.linear().transpose() * up;
             plan_.height[3] = up.dot(T_world_mesh.translation());
+            // Relative to the origin heights keep their digits; logarithms are those of true values.
+            (plan_.scale == ColorScale::linear ? plan_.base : plan_.height[3]) += up.dot(origin);
             start_key(mesh_.V.revision());
-            add_to_key(plan_.height[0], plan_.height[1], plan_.height[2], plan_.height[3]);
+            add_to_key(plan_.height[0], plan_.height[1], plan_.height[2], plan_.height[3], plan_.base);
         }
     }
 
@@ -264,8 +266,8 @@ class Planner {
 }  // namespace
 
 ColorPlan plan_colors(const MeshData& mesh, const Style& overrides, DrawMode mode,
-                      const Eigen::Affine3d& T_world_mesh, const Vec3d& up) {
-    return Planner(mesh, overrides, mode).plan(T_world_mesh, up);
+                      const Eigen::Affine3d& T_world_mesh, const Vec3d& up, const Vec3d& origin) {
+    return Planner(mesh, overrides, mode).plan(T_world_mesh, up, origin);
 }
 
 void require_colors(const SceneSnapshot& scene, const Style& overrides) {

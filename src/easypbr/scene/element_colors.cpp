@@ -145,7 +145,8 @@ Array1f plan_values(const MeshData& mesh, const ColorPlan& plan) {
 }
 
 ValueRange plan_range(const Array1f& values, const ColorPlan& plan) {
-    ValueRange range = value_range(values, plan.min, plan.max, plan.colormap.is_diverging(), plan.scale);
+    ValueRange range =
+        value_range(values, plan.min, plan.max, plan.colormap.is_diverging(), plan.scale, plan.base);
     range.parts = color_parts(plan.steps);
     return range;
 }

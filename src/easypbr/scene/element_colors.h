@@ -34,9 +34,13 @@ struct ColorPlan {
     Colormap colormap;
     ColorScale scale = ColorScale::linear;
     int steps = 0;                  ///< bands; 0: continuous
-    std::optional<float> min, max;  ///< nothing: from the values
+    std::optional<float> min, max;  ///< true values; nothing: from the values
     Vec3 nan_color{0.5f, 0.5f, 0.5f};
-    Eigen::Vector4d height = Eigen::Vector4d::Zero();  ///< product with (x, y, z, 1) of a vertex
+    /// Its product with (x, y, z, 1) of a vertex is the height above `base`.
+    Eigen::Vector4d height = Eigen::Vector4d::Zero();
+    /// Of heights on a linear scale: that of the scene's origin, in the coordinates that meshes were given;
+    /// else 0. plan_values() and the range are relative to it (see ValueRange).
+    double base = 0;
     Mat3d normal_to_world = Mat3d::Identity();
 
     /// Equal keys, equal element_colors(): revisions of the arrays, choices, and the pose where it counts.
@@ -46,13 +50,15 @@ struct ColorPlan {
 
 /// Decides by the overrides, else the object's own style, else its data: labels, else textures and vertex
 /// colours, else scalars, else the intensities of what is drawn without faces, else the material. A style
-/// that names scalars chooses them. `T_world_mesh` and the world's `up` count for heights and normals.
+/// that names scalars chooses them. `T_world_mesh` and the world's `up` count for heights and normals,
+/// `origin` (SceneSnapshot::origin) for heights, which are those in the coordinates that meshes were given.
 ///
 /// Overrides stand for all objects: where the data lack what they ask for, the object's own style decides
 /// (see require_colors()). Throws ArgumentError where the data lack what the object's own style asks for,
 /// NameError when they have no scalars of that name.
 ColorPlan plan_colors(const MeshData& mesh, const Style& overrides, DrawMode mode,
-                      const Eigen::Affine3d& T_world_mesh, const Vec3d& up);
+                      const Eigen::Affine3d& T_world_mesh, const Vec3d& up,
+                      const Vec3d& origin = Vec3d::Zero());
 
 /// Throws ArgumentError or NameError when overrides ask for labels, scalars or others that no object has.
 void require_colors(const SceneSnapshot& scene, const Style& overrides);
@@ -81,7 +87,7 @@ int32_t face_label(const MeshData& mesh, Eigen::Index face);
 Array1i vertex_labels(const MeshData& mesh);
 
 /// The values that a plan maps to colours (scalars, heights or intensities), one for each element of the
-/// array they come from. NaN for those that have no place on the plan's scale.
+/// array they come from, relative to the plan's base. NaN for those that have no place on the plan's scale.
 Array1f plan_values(const MeshData& mesh, const ColorPlan& plan);
 
 /// The range and the colours of such values.

@@ -79,7 +79,7 @@ void widen(ValueRange& range) {
         return;
     }
     if (range.max - range.min >= smallest_span) return;
-    const float half = std::max(0.5f, std::abs(range.min) * 1e-3f);
+    const auto half = float(std::max(0.5, std::abs(range.true_min()) * 1e-3));
     range.min -= half;
     range.max += half;
 }
@@ -90,13 +90,19 @@ void require_above_zero(const char* name, const std::optional<float>& end) {
             fmt::format("style: expected {} above 0, as color_scale is log, got {}", name, *end));
 }
 
+/// Of true values.
+ValueRange zero_to_one(double base) {
+    const auto min = float(-base), max = float(1 - base);
+    return {min, max, min, max, ColorScale::linear, 256, base};
+}
+
 }  // namespace
 
-ValueRange automatic_range(const Array1f& values, bool diverging, ColorScale scale) {
+ValueRange automatic_range(const Array1f& values, bool diverging, ColorScale scale, double base) {
     const Extent all = finite_extent(values, scale);
     if (!(all.min <= all.max))
-        return scale == ColorScale::linear ? ValueRange() : ValueRange{1, 10, 1, 10, scale};
-    ValueRange range{all.min, all.max, all.min, all.max, scale};
+        return scale == ColorScale::linear ? zero_to_one(base) : ValueRange{1, 10, 1, 10, scale};
+    ValueRange range{all.min, all.max, all.min, all.max, scale, 256, base};
     const Extent central = central_extent(values, scale);
     const double spread = along(central.max, scale) - along(central.min, scale);
     if (spread > 0 && spread * 3 < along(all.max, scale) - along(all.min, scale)) {
@@ -105,24 +111,25 @@ ValueRange automatic_range(const Array1f& values, bool diverging, ColorScale sca
     }
     range.min = std::clamp(range.min, -largest, largest);
     range.max = std::clamp(range.max, -largest, largest);
-    if (diverging && range.min < 0 && range.max > 0) {
-        range.max = std::max(range.max, -range.min);
-        range.min = -range.max;
+    if (diverging && range.true_min() < 0 && range.true_max() > 0) {
+        const double farthest = std::max(range.true_max(), -range.true_min());
+        range.max = float(farthest - base);
+        range.min = float(-farthest - base);
     }
     widen(range);
     return range;
 }
 
 ValueRange value_range(const Array1f& values, std::optional<float> min, std::optional<float> max,
-                       bool diverging, ColorScale scale) {
+                       bool diverging, ColorScale scale, double base) {
     if (scale == ColorScale::log) {
         require_above_zero("color_min", min);
         require_above_zero("color_max", max);
     }
-    ValueRange range = automatic_range(values, diverging, scale);
+    ValueRange range = automatic_range(values, diverging, scale, base);
     if (!min && !max) return range;
-    if (min) range.min = *min;
-    if (max) range.max = *max;
+    if (min) range.min = float(double(*min) - base);
+    if (max) range.max = float(double(*max) - base);
     if (min && max && *min > *max)
         throw ArgumentError(
             fmt::format("style: expected color_min below color_max, got {} and {}", *min, *max));

@@ -262,7 +262,8 @@ void DrawableCache::apply(DrawableScene& drawable, size_t index, const InferredS
     object.half_voxel = object.point_radius = 0;  // kinds of primitives tell how far they reach
     const DrawStyle style = resolve_style(*own.mesh, settings.style);
     const auto plan_for = [&](DrawMode mode) {
-        return plan_colors(*own.mesh, settings.style, mode, own.T_world_mesh, parse_up(settings.camera.up));
+        return plan_colors(*own.mesh, settings.style, mode, own.T_world_mesh, parse_up(settings.camera.up),
+                           drawable.scene.origin);
     };
     const ColorPlan plan = plan_for(style.mode);
     drawable.meanings[index] = drawable.points[index].meaning = meaning_of(plan);
