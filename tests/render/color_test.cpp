@@ -150,6 +150,62 @@ TEST(Colors, OfValuesAreThoseOfTheTable) {
     }
 }
 
+// Two large triangles before a grid of 502,002 small ones that they hide, in bands of x; a corner of one has
+// no value. Large meshes have single large triangles, too.
+TEST(Colors, OfValuesAreThoseOfTheTableInLargeMeshes) {
+    constexpr int n = 501;
+    constexpr float x0 = -0.4f, step = 0.8f / n;
+    Mesh mesh = facing_square(1);
+    mesh.edit([](MeshData& d) {
+        Array3f::Dense V(4 + (n + 1) * (n + 1), 3);
+        Array3i::Dense F(2 + 2 * n * n, 3);
+        V.topRows(4) = d.V;
+        F.topRows(2) = d.F;
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; j <= n; ++j)
+                V.row(4 + i * (n + 1) + j) << x0 + step * float(j), x0 + step * float(i), -1;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const int a = 4 + i * (n + 1) + j, b = a + n + 1;
+                F.row(2 + 2 * (i * n + j)) << a, a + 1, b + 1;
+                F.row(3 + 2 * (i * n + j)) << a, b + 1, b;
+            }
+        Array1f::Dense values = V.col(0);
+        values[3] = std::numeric_limits<float>::quiet_NaN();
+        d.V = Array3f(V);
+        d.F = Array3i(F);
+        d.UV = {};
+        d.scalars = {{"x", Array1f(values)}};
+        d.style.lit = false;
+        d.style.color_by = ColorBy::scalar;
+        d.style.color_steps = 4;
+        d.style.nan_color = Vec3(1, 0, 0);
+    });
+    const ColorTable table = color_table(Colormap::viridis, 4);
+    Scene scene;
+    scene.show(mesh, "mesh");
+    for (const bool native : {true, false}) {
+        app::Session session = plain_session(scene, 128);
+        session.allow_native_geometry(native);
+        look_from(session, Vec3d(0, 0, 4));
+        const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+        const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+        // The square is 119.4 pixels wide.
+        for (int row = 6; row < 122; ++row)
+            for (int column = 6; column < 122; ++column) {
+                const double x = (column + 0.5 - 64) / pixels_per_unit,
+                             y = (64 - row - 0.5) / pixels_per_unit;
+                const double bands = 2 * (x + 1), from_band = std::abs(bands - std::round(bands)) / 2;
+                // Pixels that a border runs through may be on either side of it.
+                if (std::min(from_band, std::abs(x - y)) < 1 / pixels_per_unit) continue;
+                const Rgb8 expected = x < y ? Rgb8{255, 0, 0} : table[size_t(64 * std::floor(bands))];
+                const uint8_t* const seen = picture.at<uint8_t>(column, row);
+                ASSERT_EQ((Rgb8{seen[0], seen[1], seen[2]}), expected)
+                    << native << ' ' << column << ' ' << row;
+            }
+    }
+}
+
 // A chosen range that ends inside a triangle: what is beyond has the end's colour, what is within its own.
 TEST(Colors, OfAChosenRangeStayWhereTheirValuesAre) {
     Mesh mesh = facing_square(1);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/crease.h"
@@ -19,9 +21,6 @@ namespace easypbr::render {
 namespace {
 
 constexpr size_t drawable_grain = 1 << 15;
-/// Beyond this many faces triangles are about as small as pixels, where it does not matter whether a value or
-/// its colour is interpolated.
-constexpr Eigen::Index many_faces = 500000;
 
 ArrayXf colors_of(const std::vector<Rgba8>& colors) {
     ArrayXf::Dense C(Eigen::Index(colors.size()), 4);
@@ -31,35 +30,44 @@ ArrayXf colors_of(const std::vector<Rgba8>& colors) {
     return ArrayXf(std::move(C));
 }
 
-/// Each face with three vertices of its own. Vertices that were one stay one for normals (source_vertex).
-MeshData with_own_corners(const MeshData& mesh) {
-    const std::span<const int32_t> corners(mesh.F.data(), size_t(mesh.F.size()));
+Array1i flattened(const Array3i& F) {
+    return Array1i(Array1i::Dense(Eigen::Map<const Array1i::Dense>(F.data(), F.size())));
+}
+
+/// What a plan makes of a mesh.
+struct Colored {
+    MeshData mesh;
+    Texture table = {};   ///< of values or texture coordinates; empty for colours
+    Array1i points = {};  ///< for each vertex that of the given mesh; empty: the same
+};
+
+/// Faces of other vertices: row i is `rows[i]` of the given ones. Vertices that were one stay one for normals
+/// (source_vertex).
+Colored with_vertices(const MeshData& mesh, Array1i rows, Array3i F) {
+    const std::span<const int32_t> from(rows.data(), size_t(rows.size()));
     MeshData out = without_arrays(mesh);
-    out.V = rows_of(mesh.V, corners);
-    out.N = rows_of(mesh.N, corners);
-    out.C = rows_of(mesh.C, corners);
-    out.UV = rows_of(mesh.UV, corners);
-    out.uv_tangents = rows_of(mesh.uv_tangents, corners);
+    out.V = rows_of(mesh.V, from);
+    out.N = rows_of(mesh.N, from);
+    out.UV = rows_of(mesh.UV, from);
+    out.uv_tangents = rows_of(mesh.uv_tangents, from);
     out.parts = mesh.parts;
     out.voxel_size = mesh.voxel_size;
     out.source_face = mesh.source_face;
-    Array3i::Dense F(mesh.F.rows(), 3);
-    Array1i::Dense source(mesh.F.size());
-    for (Eigen::Index i = 0; i < mesh.F.size(); ++i) {
-        F.data()[i] = int32_t(i);
-        const int32_t vertex = mesh.F.data()[i];
-        source[i] = mesh.source_vertex.empty() ? vertex : mesh.source_vertex(vertex);
-    }
-    out.F = Array3i(std::move(F));
-    out.source_vertex = Array1i(std::move(source));
-    return out;
+    out.F = std::move(F);
+    out.source_vertex = mesh.source_vertex.empty() ? rows : rows_of(mesh.source_vertex, from);
+    return {std::move(out), {}, std::move(rows)};
 }
 
-MeshData with_face_colors(const MeshData& mesh, const std::vector<Rgba8>& colors) {
+/// Each face with three vertices of its own.
+Colored with_face_colors(const MeshData& mesh, const std::vector<Rgba8>& colors) {
     std::vector<Rgba8> corners(3 * colors.size());
-    for (size_t i = 0; i < corners.size(); ++i) corners[i] = colors[i / 3];
-    MeshData out = with_own_corners(mesh);
-    out.C = colors_of(corners);
+    Array3i::Dense F(mesh.F.rows(), 3);
+    for (size_t i = 0; i < corners.size(); ++i) {
+        corners[i] = colors[i / 3];
+        F.data()[i] = int32_t(i);
+    }
+    Colored out = with_vertices(mesh, flattened(mesh.F), Array3i(std::move(F)));
+    out.mesh.C = colors_of(corners);
     return out;
 }
 
@@ -111,25 +119,49 @@ MeshData with_places(const MeshData& mesh, const ElementColors& values) {
     return out;
 }
 
+/// A face with a corner that is not a number has no value at all: other corners of it that have one are
+/// repeated behind the mesh's own vertices, for all such faces once.
+Colored with_repeated_corners(const MeshData& mesh, const Array1f& values) {
+    const auto is_number = [&](int32_t vertex) { return std::isfinite(values(vertex)); };
+    constexpr int32_t none = -1;
+    std::vector<int32_t> rows(size_t(mesh.V.rows())), repeated(rows.size(), none);
+    std::iota(rows.begin(), rows.end(), 0);
+    Array3i::Dense F = mesh.F;
+    for (Eigen::Index f = 0; f < F.rows(); ++f) {
+        int32_t* const corners = F.data() + 3 * f;
+        if (std::all_of(corners, corners + 3, is_number)) continue;
+        for (int k = 0; k < 3; ++k) {
+            if (!is_number(corners[k])) continue;
+            int32_t& own = repeated[size_t(corners[k])];
+            if (own == none) {
+                own = int32_t(rows.size());
+                rows.push_back(corners[k]);
+            }
+            corners[k] = own;
+        }
+    }
+    const Eigen::Map<const Array1i::Dense> whole(rows.data(), Eigen::Index(rows.size()));
+    return with_vertices(mesh, Array1i(Array1i::Dense(whole)), Array3i(std::move(F)));
+}
+
 /// Values as texture coordinates (v up) of their table: interpolated before they become colours, beyond the
 /// table's ends too. A face with a corner that is not a number has no values at all.
-MeshData with_values(const MeshData& mesh, const ElementColors& values) {
+Colored with_values(const MeshData& mesh, const ElementColors& values) {
     const bool has_nan = !values.values.array().isFinite().all();
-    MeshData out = has_nan ? with_own_corners(mesh) : mesh;
-    Array2f::Dense UV(out.V.rows(), 2);
+    Colored out = has_nan ? with_repeated_corners(mesh, values.values) : Colored{mesh};
+    Array2f::Dense UV(out.mesh.V.rows(), 2);
     parallel_for(size_t(UV.rows()), drawable_grain, [&](size_t i) {
         const auto row = Eigen::Index(i);
-        bool is_nan = false;
-        if (has_nan)
-            for (int k = 0; k < 3; ++k) is_nan |= !std::isfinite(values.values(mesh.F(row / 3, k)));
-        const float value = values.values(has_nan ? mesh.F.data()[i] : row);
-        if (is_nan)
-            UV.row(row) << 0.5f, 0.25f;
-        else
+        // What is repeated is of faces without a value.
+        const float value =
+            row < mesh.V.rows() ? values.values(row) : std::numeric_limits<float>::quiet_NaN();
+        if (std::isfinite(value))
             UV.row(row) << place_of(value, values.range), 0.75f;
+        else
+            UV.row(row) << 0.5f, 0.25f;
     });
-    out.UV = Array2f(std::move(UV));
-    out.C = {};
+    out.mesh.UV = Array2f(std::move(UV));
+    out.mesh.C = {};
     return out;
 }
 
@@ -139,31 +171,22 @@ void show_table(Material& material, const Texture& table) {
     material.base_color_texture = table;
 }
 
-MeshData with_colors(const MeshData& mesh, const ColorPlan& plan, Texture& table) {
+Colored with_colors(const MeshData& mesh, const ColorPlan& plan) {
     if (plan.source == ColorSource::coordinates) {
-        table = coordinates_texture();
-        MeshData out = mesh;
-        out.C = {};
+        Colored out{mesh, coordinates_texture()};
+        out.mesh.C = {};
         return out;
     }
-    ElementColors colors = element_colors(mesh, plan);
-    if (plan.source == ColorSource::values && plan.mode == DrawMode::lines) {
-        table = table_texture(colors);
-        return with_places(mesh, colors);
+    const ElementColors colors = element_colors(mesh, plan);
+    if (plan.source == ColorSource::values) {
+        Colored out =
+            plan.mode == DrawMode::lines ? Colored{with_places(mesh, colors)} : with_values(mesh, colors);
+        out.table = table_texture(colors);
+        return out;
     }
-    if (plan.source == ColorSource::values && mesh.F.rows() <= many_faces) {
-        table = table_texture(colors);
-        return with_values(mesh, colors);
-    }
-    if (plan.source == ColorSource::values)
-        for (Eigen::Index i = 0; i < colors.values.size(); ++i) {
-            const int index = color_index(colors.values(i), colors.range);
-            colors.colors.push_back(index < 0 ? colors.nan_color : colors.table[size_t(index)]);
-        }
-    if (plan.element == PerElement::face && plan.source == ColorSource::colors)
-        return with_face_colors(mesh, colors.colors);
-    MeshData out = mesh;
-    out.C = colors_of(colors.colors);
+    if (plan.element == PerElement::face) return with_face_colors(mesh, colors.colors);
+    Colored out{mesh};
+    out.mesh.C = colors_of(colors.colors);
     return out;
 }
 
@@ -189,10 +212,6 @@ Array1i composed(const Array1i& second, const Array1i& first) {
     Array1i::Dense both(second.rows());
     for (Eigen::Index i = 0; i < both.size(); ++i) both[i] = first(second(i));
     return Array1i(std::move(both));
-}
-
-Array1i flattened(const Array3i& F) {
-    return Array1i(Array1i::Dense(Eigen::Map<const Array1i::Dense>(F.data(), F.size())));
 }
 
 /// All that a cached drawing replaces of an object, and so what it is valid for. Materials are those of the
@@ -300,9 +319,10 @@ std::shared_ptr<const MeshData> DrawableCache::colored(const SceneSnapshot::Obje
     if (plan.source == ColorSource::material) return object.mesh;
     const MeshData& own = *object.mesh;
     return get(fmt::format("{} {}", arrays_of(own), plan.key), own, sources, [&](Entry& entry) {
-        MeshData made = with_colors(own, plan, entry.table);
-        if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
-        return made;
+        Colored made = with_colors(own, plan);
+        entry.table = made.table;
+        entry.sources.points = made.points;
+        return std::move(made.mesh);
     });
 }
 
