@@ -366,6 +366,21 @@ TEST(Glb, ColorsOfVerticesAreWrittenBesideWhite) {
     EXPECT_TRUE(first_child(round_trip(Mesh(plain)).mesh).materials.at(0).has_default_color());
 }
 
+TEST(Glb, TexturesAreWrittenBesideWhite) {
+    MeshData textured = square();
+    textured.C = {};
+    textured.UV = Array2f(Array2f::Dense::Zero(textured.V.rows(), 2));
+    textured.materials.resize(1);
+    textured.materials[0].base_color_texture.image = flat_image(2, {10, 20, 30});
+    const auto color_of = [&] {
+        return first_child(round_trip(Mesh(textured)).mesh).materials.at(0).base_color;
+    };
+    EXPECT_EQ(color_of(), Vec3(1, 1, 1));
+    textured.materials[0].base_color_given = true;
+    EXPECT_EQ(color_of(), Vec3(0.6f, 0.6f, 0.6f));
+    EXPECT_FALSE(first_child(round_trip(Mesh(textured)).mesh).materials.at(0).has_default_color());
+}
+
 // Points and lines have one, but for the default, which draws lines dark.
 TEST(Glb, MaterialsOfPointsAndLinesAreKept) {
     for (const bool lines : {false, true}) {

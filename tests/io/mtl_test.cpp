@@ -343,4 +343,20 @@ TEST(Mtl, AKdOf06BesideColorsIsNoDefault) {
     EXPECT_TRUE(material_of("b", " 1 0 0").has_default_color());
 }
 
+TEST(Mtl, AKdOf06BesideATextureIsNoDefault) {
+    const TemporaryFolder folder;
+    io::save_image(row_of(3, {1, 2, 3}), folder / "t.png");
+    const Material given = read_material("Kd 0.6 0.6 0.6\nmap_Kd t.png\n", folder);
+    ASSERT_TRUE(given.base_color_texture);
+    EXPECT_EQ(given.color_factor(false, true), Vec3(0.6f, 0.6f, 0.6f));
+    EXPECT_EQ(read_material("map_Kd t.png\n", folder).color_factor(false, true), Vec3(1, 1, 1));
+    // Written, the default is white beside the texture.
+    MeshData mesh = read(square + "vt 0 0\nf 1/1 2/1 3/1\n", folder / "test.obj");
+    Material plain = given;
+    plain.base_color_given = false;
+    mesh.materials = {plain};
+    Mesh(mesh).save(folder / "written.obj");
+    EXPECT_EQ(Mesh(folder / "written.obj").snapshot()->materials.at(0).base_color, Vec3(1, 1, 1));
+}
+
 }  // namespace easypbr::mtl_test

@@ -472,4 +472,36 @@ TEST(Colors, OfVerticesAreTimesAGivenFactor) {
     EXPECT_NEAR(factor(true).x(), 0.6, 1e-3);
 }
 
+// A texture of 200 is drawn as it is under a default material, under a given 0.6 darker, by rays as well;
+// what does not show the texture keeps the default.
+TEST(Colors, OfTexturesAreTimesAGivenFactor) {
+    const auto mean_of = [](const Material& material, std::optional<ColorBy> by, bool with_uv, bool path) {
+        Mesh mesh = facing_square(4, material);
+        mesh.edit([&](MeshData& d) {
+            if (by) d.style.color_by = *by;
+            if (!with_uv) d.UV = {};
+        });
+        Scene scene;
+        scene.show(mesh, "square");
+        app::Session session = plain_session(scene, 32);
+        session.settings().path.enabled = path;
+        return double(*session.render_layers({"albedo"}).at("albedo").at<float>(16, 16));
+    };
+    Material plain;
+    auto image = std::make_shared<Image>(2, 2, 3, PixelType::u8);
+    std::ranges::fill(image->pixels<uint8_t>(), uint8_t(200));
+    plain.base_color_texture.image = image;
+    Material given = plain;
+    given.base_color_given = true;
+    const double texel = double(linear_from_srgb(Vec3(Vec3::Constant(200 / 255.0f))).x());
+    // Half precision, if layers have it: 2^-11 of the value.
+    for (const bool path : {false, true}) {
+        EXPECT_NEAR(mean_of(plain, {}, true, path), texel, 1e-3) << path;
+        EXPECT_NEAR(mean_of(plain, ColorBy::texture, true, path), texel, 1e-3) << path;
+        EXPECT_NEAR(mean_of(given, {}, true, path), 0.6 * texel, 1e-3) << path;
+        EXPECT_NEAR(mean_of(plain, ColorBy::solid, true, path), 0.6, 1e-3) << path;
+        EXPECT_NEAR(mean_of(plain, {}, false, path), 0.6, 1e-3) << path;
+    }
+}
+
 }  // namespace easypbr::render::color_test

@@ -339,6 +339,10 @@ TEST(Merged, ColorsOfOthersLeaveGivenMaterialsAlone) {
     painted.materials[0] = {};
     painted.materials[0].base_color_given = true;
     EXPECT_EQ(Vec3(merged(std::vector{colored, painted}).C.row(3)), Vec3(1, 1, 1)) << "times its own grey";
+    painted.materials[0].base_color_given = false;
+    painted.materials[0].base_color_texture.image = std::make_shared<const Image>(1, 1, 3, PixelType::u8);
+    painted.UV = Array2f(Array2f::Dense::Zero(3, 2));
+    EXPECT_EQ(Vec3(merged(std::vector{colored, painted}).C.row(3)), Vec3(1, 1, 1)) << "its texture's own";
 }
 
 }  // namespace easypbr::merge_test

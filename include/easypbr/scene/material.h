@@ -49,7 +49,7 @@ struct SurfaceShader {
 /// Factors multiply their textures. Colours are linear Rec.709.
 struct Material {
     std::string name;
-    Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default is white beside colours, see has_default_color()
+    Vec3 base_color{0.6f, 0.6f, 0.6f};  ///< this default is white beside others, see color_factor()
     float opacity = 1;                  ///< 0 transparent to 1 opaque
     float metallic = 0;                 ///< 0 dielectric to 1 metal
     float roughness = 0.5f;             ///< perceptual, 0 to 1; alpha = roughness^2
@@ -98,7 +98,7 @@ struct Material {
     float anisotropy = 0;               ///< strength, 0 to 1
     float anisotropy_rotation_deg = 0;  ///< degrees, counter-clockwise from the tangent
 
-    Texture base_color_texture;  ///< sRGB; its alpha multiplies opacity
+    Texture base_color_texture;  ///< sRGB; its alpha multiplies opacity; times color_factor()
     Texture metallic_texture;
     Texture roughness_texture;
     Texture normal_texture;  ///< tangent space, +Y up (OpenGL, glTF)
@@ -121,10 +121,15 @@ struct Material {
 
     SurfaceShader shader;  ///< of faces
 
-    bool base_color_given = false;  ///< a file says its base colour beside colours of vertices: no default
+    /// A file says its base colour beside colours of vertices or a base colour texture: no default.
+    bool base_color_given = false;
 
-    /// Whether its base colour is the default, which counts as white where vertices have colours.
+    /// Whether its base colour is the default.
     bool has_default_color() const;
+    /// What colours of vertices and the base colour texture are multiplied by, linear: the base colour, and
+    /// white in place of the default where there are colours, or a base colour texture on faces with texture
+    /// coordinates.
+    Vec3 color_factor(bool with_colors, bool with_coordinates) const;
     /// Whether all values are equal and all textures, as Texture::operator== has it.
     bool operator==(const Material&) const = default;
 

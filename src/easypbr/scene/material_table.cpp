@@ -59,7 +59,8 @@ constexpr MaterialColor colors[] = {
      "Linear colour of white light after the attenuation distance."}};
 
 constexpr MaterialTexture textures[] = {
-    {"base_color", &Material::base_color_texture, TexelUse::color, "Its alpha multiplies opacity.",
+    {"base_color", &Material::base_color_texture, TexelUse::color,
+     "Of faces; times the base colour unless that is the default. Its alpha multiplies opacity.",
      &MaterialSettings::base_color_texture, "Base colour texture file (sRGB) of every material."},
     {"metallic", &Material::metallic_texture, TexelUse::number, "Its first channel is read.",
      &MaterialSettings::metallic_texture, "Metallic texture file of every material."},
@@ -176,6 +177,11 @@ bool Material::has_textures() const {
 
 bool Material::has_default_color() const {
     return !base_color_given && base_color == Material().base_color;
+}
+
+Vec3 Material::color_factor(bool with_colors, bool with_coordinates) const {
+    const bool is_beside = with_colors || (with_coordinates && base_color_texture);
+    return is_beside && has_default_color() ? Vec3(Vec3::Ones()) : base_color;
 }
 
 bool Material::is_extended() const {

@@ -187,17 +187,20 @@ std::vector<int> join_materials(const MeshData& mesh, JoinedMaterials& joined) {
     return places;
 }
 
-Vec3 color_beside(const Material& material) {
-    return material.has_default_color() ? srgb_from_linear(material.base_color) : Vec3(1, 1, 1);
+Vec3 color_beside(const Material& material, bool with_coordinates) {
+    const Vec3 alone = material.color_factor(false, with_coordinates);
+    const bool stays = alone == material.color_factor(true, with_coordinates);
+    return stays ? Vec3(1, 1, 1) : srgb_from_linear(alone);
 }
 
 /// The colours that vertices without any have beside others: a default material, which is white there, leaves
-/// them its grey.
+/// them its grey, unless it has a texture.
 ArrayXf colors_beside(const MeshData& mesh) {
     const Material first = mesh.materials.empty() ? Material() : mesh.materials.front();
-    ArrayXf::Dense C = color_beside(first).transpose().replicate(mesh.V.rows(), 1);
+    const bool with_coordinates = !mesh.F.empty() && !mesh.UV.empty();
+    ArrayXf::Dense C = color_beside(first, with_coordinates).transpose().replicate(mesh.V.rows(), 1);
     for (const MeshPart& part : mesh.parts) {
-        const Vec3 color = color_beside(mesh.materials.at(size_t(part.material)));
+        const Vec3 color = color_beside(mesh.materials.at(size_t(part.material)), with_coordinates);
         for (int face = part.first_face; face < part.first_face + part.face_count; ++face)
             for (int corner = 0; corner < 3; ++corner)
                 C.row(mesh.F(face, corner)).head<3>() = color.transpose();

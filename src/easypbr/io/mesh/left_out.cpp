@@ -114,9 +114,8 @@ void add_meanings(const MeshData& mesh, const std::string& extension, std::vecto
 
 /// What the colours of vertices are multiplied by, linear, and the opacity.
 Vec4 factor_of(const Material& material, bool beside_colors) {
-    const bool is_white = beside_colors && material.has_default_color();
     const float opacity = material.alpha_mode_for(false) == AlphaMode::opaque ? 1 : material.opacity;
-    const Vec3 color = is_white ? Vec3(1, 1, 1) : material.base_color;
+    const Vec3 color = material.color_factor(beside_colors, false);
     return {color.x(), color.y(), color.z(), opacity};
 }
 

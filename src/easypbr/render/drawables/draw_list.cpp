@@ -61,9 +61,9 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     const bool own_color = !source.settings.material.color.value();
     item.with_colors =
         !mesh.C.empty() && (source.colors.from_data || (own_color && source.colors.vertex_colors));
-    if (item.with_colors && item.material.has_default_color()) item.material.base_color = Vec3::Ones();
     if (!source.colors.textured || (source.colors.from_data && item.with_colors))
         item.material.base_color_texture = {};
+    item.material.base_color = item.material.color_factor(item.with_colors, false);
     item.alpha = item.material.alpha_mode_for(item.with_colors && source.transparent_colors);
     return item;
 }
@@ -84,6 +84,8 @@ void add_mesh(const Source& source, DrawList& list) {
     if (source.mesh().F.empty()) return;
     for (const MeshPart& part : parts_of(source.mesh())) {
         DrawItem item = make_item(source, part);
+        // Faces alone show textures.
+        item.material.base_color = item.material.color_factor(item.with_colors, !source.mesh().UV.empty());
         set_kind(source, item);
         if (source.style.mode == DrawMode::voxels) item.style.flat = true;
         list.items[DrawMode::mesh].push_back(std::move(item));

@@ -196,7 +196,8 @@ class GlbBuilder {
     }
 
     size_t material_index(const MeshData& data, Material material) {
-        if (!data.C.empty() && material.has_default_color()) material.base_color.setOnes();
+        const bool with_coordinates = !data.F.empty() && !data.UV.empty();
+        material.base_color = material.color_factor(!data.C.empty(), with_coordinates);
         const bool transparent = has_transparent_colors(data.C);
         return material_numbers_.number(material, transparent,
                                         [&] { return materials_.add(material, transparent); });

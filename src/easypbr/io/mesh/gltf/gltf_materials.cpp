@@ -132,6 +132,8 @@ class MaterialReader {
             out.*place.texture = texture(json, place);
             (out.*place.texture).channel = place.channel;
         }
+        // It is what this factor multiplies, a factor of 0.6 as well.
+        out.base_color_given = out.base_color_texture && out.has_default_color();
         for (const std::string& change : clamp_to_ranges(out))
             log_warning(fmt::format("{}, material '{}': {}", document_.path().string(), out.name, change));
         return out;

@@ -95,7 +95,9 @@ class ObjReader {
         triangulate(std::move(faces_), mesh_);
         fill_missing_normals();
         if (mesh_.C.empty())
-            for (Material& material : mesh_.materials) material.base_color_given = false;
+            for (Material& material : mesh_.materials)
+                material.base_color_given &=
+                    material.base_color_texture && material.base_color == Material().base_color;
         if (mesh_.materials.size() > 1) assign_materials(material_of_face_, mesh_);
         return std::move(mesh_);
     }

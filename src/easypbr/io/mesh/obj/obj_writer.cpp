@@ -135,10 +135,10 @@ class MtlWriter {
     }
 
     /// The name of the material in the MTL, one line, never empty. Materials that are the same there share
-    /// it. `with_colors`: beside those of vertices, which a default colour is white for.
-    std::string add(const Material& m, bool with_colors) {
+    /// it. `color`: see Material::color_factor().
+    std::string add(const Material& m, const Vec3& color) {
         body_.clear();
-        append(m, with_colors);
+        append(m, color);
         const std::string plain = m.name.empty() ? "material" : plain_word(m.name);
         std::string& name = materials_[{plain, body_}];
         for (int i = 1; name.empty(); ++i) {
@@ -154,8 +154,7 @@ class MtlWriter {
     std::map<std::string, std::shared_ptr<const Image>> take_images() { return std::move(images_); }
 
   private:
-    void append(const Material& m, bool with_colors) {
-        const Vec3 color = with_colors && m.has_default_color() ? Vec3(1, 1, 1) : m.base_color;
+    void append(const Material& m, const Vec3& color) {
         line("Kd {} {} {}\n", color.x(), color.y(), color.z());
         line("Ke {} {} {}\n", m.emissive.x(), m.emissive.y(), m.emissive.z());
         line("Pr {}\nPm {}\nd {}\nillum {}\n", m.roughness, m.metallic, m.opacity, m.unlit ? 0 : 2);
@@ -226,7 +225,9 @@ ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::
     std::vector<std::string> names;
     MtlWriter writer(folder, mtl_name);
     for (const Material& material : mesh.materials) writer.keep_names_of(material);
-    for (const Material& material : mesh.materials) names.push_back(writer.add(material, !mesh.C.empty()));
+    const bool with_coordinates = !mesh.F.empty() && !mesh.UV.empty();
+    for (const Material& material : mesh.materials)
+        names.push_back(writer.add(material, material.color_factor(!mesh.C.empty(), with_coordinates)));
     text.mtl = writer.take();
     text.images = writer.take_images();
     if (!names.empty()) text.obj = fmt::format("mtllib {}\n", name_in_line(mtl_name));
