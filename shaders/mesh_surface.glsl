@@ -59,7 +59,9 @@ vec4 texel_of(sampler2D source, int slot) {
 }
 vec3 seen_face() { return v_face; }
 #else
-vec4 texel_of(sampler2D source, int slot) { return texture(source, uv_of(slot), u_lod_bias); }
+// Places of values may be 1e18 tables of 256 texels away; drivers that make texels whole numbers before they
+// clamp them reach 2^31. Coordinates of images have hardly a digit behind the point there.
+vec4 texel_of(sampler2D source, int slot) { return texture(source, clamp(uv_of(slot), -4e6, 4e6), u_lod_bias); }
 
 uniform vec4 u_backwards;  // world, against the direction of view; w: 1 for an orthographic camera
 

@@ -233,6 +233,40 @@ TEST(Colors, OfAChosenRangeStayWhereTheirValuesAre) {
     }
 }
 
+// Two colours with the border at 0, of values from -0.1 to 0.9 and of a range as narrow as a threshold.
+TEST(Colors, OfANarrowRangeMeetWhereItsValueIs) {
+    Mesh mesh = facing_square(1);
+    Scene scene;
+    for (const float half : {1e-3f, 1e-9f, 1e-16f}) {
+        mesh.edit([&](MeshData& d) {
+            Array1f::Dense values(4);
+            for (int i = 0; i < 4; ++i) values[i] = d.V(i, 0) < 0 ? -0.1f : 0.9f;
+            d.scalars = {{"x", Array1f(values)}};
+            d.style.lit = false;
+            d.style.color_by = ColorBy::scalar;
+            d.style.colormap = parse_colormap("#0000ff,#ff0000");
+            d.style.color_steps = 2;
+            d.style.color_min = -half;
+            d.style.color_max = half;
+        });
+        scene.show(mesh, "square");
+        for (const int way : {0, 1, 2}) {
+            app::Session session = plain_session(scene, 128);
+            session.allow_native_geometry(way != 1);
+            session.settings().path.enabled = way == 2;
+            look_from(session, Vec3d(0, 0, 4));
+            const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+            // Values are 0 at x = -0.8. A rounding error may take the neighbour.
+            const double border = 64 - 0.8 * 64 / (4 * std::tan(radians(15.0)));
+            for (int x = 6; x < 122; ++x) {
+                if (std::abs(x + 0.5 - border) < 1) continue;
+                EXPECT_EQ(int(picture.at<uint8_t>(x, 64)[0]), x > border ? 255 : 0)
+                    << half << ", way " << way << ", " << x;
+            }
+        }
+    }
+}
+
 // Texture coordinates repeat at each pixel, not at the vertices: from 0 to 4 across a square they are four
 // ramps. 2 codes: the texture has 256 steps, and its colours are linear values of 16 bits on the way.
 TEST(Colors, OfTextureCoordinatesRepeat) {

@@ -306,8 +306,9 @@ TEST(Colormap, GivenEndsReplaceInferredOnes) {
     EXPECT_EQ(color_index(10, value_range(data, 20, {})), 0);
     EXPECT_EQ(color_index(0, value_range(data, {}, -20)), 255);
     EXPECT_THROW(value_range(data, 3, 2), ArgumentError);
+    // Equal ends are no error: 5 is in the middle, as a single value is.
     const ValueRange point = value_range(data, 5, 5);
-    EXPECT_LT(point.min, point.max);
+    EXPECT_EQ(std::pair(point.min, point.max), std::pair(4.5f, 5.5f));
 }
 
 }  // namespace easypbr::colormap_test

@@ -132,7 +132,7 @@ ValueRange value_range(const Array1f& values, std::optional<float> min, std::opt
     if (max) range.max = float(double(*max) - base);
     if (min && max && *min > *max)
         throw ArgumentError(
-            fmt::format("style: expected color_min below color_max, got {} and {}", *min, *max));
+            fmt::format("style: expected color_min not above color_max, got {} and {}", *min, *max));
     // One end beyond all values: they all have the colour of the other end.
     if (min && !max) range.max = std::max(range.max, range.min);
     if (max && !min) range.min = std::min(range.min, range.max);

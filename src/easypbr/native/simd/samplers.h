@@ -259,8 +259,9 @@ INLINE vec4 filtered(const Texture& s, const TextureFootprint& f, size_t bytes, 
 }
 /// Of the largest level.
 INLINE vec4 nearest(const Texture& s, vfloat u, vfloat v) {
-    const vint x = clamp(to_int(floor(u * float(s.width))), 0, s.width - 1),
-               y = clamp(to_int(floor(v * float(s.height))), 0, s.height - 1);
+    // Clamped before they are whole numbers: places of values may be farther off than these reach.
+    const vint x = to_int(clamp(u * float(s.width), 0.0f, float(s.width - 1))),
+               y = to_int(clamp(v * float(s.height), 0.0f, float(s.height - 1)));
     const vint at = y * (s.width + 1) + x;
     Floats4 pixels[lanes];
     for (int k = 0; k < lanes; ++k)

@@ -73,7 +73,7 @@ Colored with_face_colors(const MeshData& mesh, const std::vector<Rgba8>& colors)
 
 /// Places of values are this many ranges away from the table at most, so that their interpolation stays
 /// finite.
-constexpr float farthest = 1e6f;
+constexpr float farthest = 1e18f;
 
 /// The colours of a table in the first row, the colour of what is not a number in the second.
 Texture table_texture(const ElementColors& values) {
