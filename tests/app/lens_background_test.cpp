@@ -150,6 +150,36 @@ TEST(LensBackground, LiesBehindWhatTheLensShows) {
     }
 }
 
+/// Of one colour, as a setting and as an image.
+Image flat(const Vec3& color) {
+    Image image(size.x(), size.y(), 3, PixelType::u8);
+    const Rgb8 code = to_rgb8(color);
+    for (int y = 0; y < size.y(); ++y)
+        for (int x = 0; x < size.x(); ++x) std::copy_n(code.data(), 3, image.at<uint8_t>(x, y));
+    return image;
+}
+
+// What covers a part of a pixel is mixed with what is behind it in linear light, before and through the lens:
+// a background is the same whether it is drawn with the scene or put behind it.
+TEST(LensBackground, OfOneColourIsThatOfAnImageOfIt) {
+    for (const Lens lens : lenses)
+        for (const Vec3& color : {Vec3(1, 1, 1), Vec3(1, 0.2f, 0), Vec3(0, 0, 0)}) {
+            Session session = session_of(true);
+            Mesh ball = session.scene().get("ball");
+            Material black;
+            black.base_color = Vec3(0, 0, 0);
+            ball.set_material(black);
+            session.scene().show(ball, "ball");
+            look(session, lens);
+            session.settings().background.mode = BackgroundMode::color;
+            session.settings().background.color = color;
+            const Image drawn_with = rendered(session);
+            session.set_background(flat(color));
+            // Half a code of rounding before the lens, and half a code after it.
+            EXPECT_LE(difference<uint8_t>(drawn_with, rendered(session)), 1) << int(lens);
+        }
+}
+
 // A lens that does nothing: the picture is that without it. Glass shows the photo as it does there.
 TEST(LensBackground, IsSeenThroughSurfacesAsWithoutALens) {
     Session plain = session_of(true), bent = session_of(true);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -133,11 +134,12 @@ void expect_mixed_by_alpha(PixelType type) {
         set<T>(drawn, 0, y, {200 * one, 0, 255 * one, 255 * one});
         set<T>(drawn, 1, y, {100 * one, 170 * one, 255 * one, 85 * one});
     }
-    // A quarter of the way alpha is 3/4 * 255 + 1/4 * 85 = 212.5; of the colours the second one has the part
-    // (85 / 4) / 212.5 = 1/10.
+    // A quarter of the way alpha is 3/4 * 255 + 1/4 * 85 = 212.5; of the light the second one has the part
+    // (85 / 4) / 212.5 = 1/10. By the curve of sRGB 200 and 100 are the light 0.57758 and 0.12744, whose mean
+    // 0.53257 is 192.8851; 170 is 0.40198, a tenth of which is 56.4784.
     const Image mixed = warp(drawn, one_pixel(0.25f, 0.5f));
-    EXPECT_EQ(mixed.at<T>(0, 0)[0], 190 * one);
-    EXPECT_EQ(mixed.at<T>(0, 0)[1], 17 * one);
+    EXPECT_EQ(mixed.at<T>(0, 0)[0], std::lround(192.8851 * one));
+    EXPECT_EQ(mixed.at<T>(0, 0)[1], std::lround(56.47842 * one));
     EXPECT_EQ(mixed.at<T>(0, 0)[2], 255 * one);
     EXPECT_EQ(mixed.at<T>(0, 0)[3], std::lround(212.5 * one));
 }
@@ -160,8 +162,9 @@ TEST(Warp, LeavesTheColourOfBordersAlone) {
     for (int c = 0; c < 4; ++c) EXPECT_EQ(none.at<uint8_t>(0, 0)[c], 0);
 }
 
-// Premultiplied light is mixed as it is; so are opaque codes: 3/4 of 200 and 1/4 of 100.
-TEST(Warp, MixesOpaqueColourAndLightLinearly) {
+// Premultiplied light is mixed as it is. Opaque codes are mixed as light: 3/4 of 0.57758 (200) and 1/4 of
+// 0.12744 (100) are 0.46504, which is 181.52; a mean of codes were 175.
+TEST(Warp, MixesOpaqueColourAsLight) {
     Image codes(2, 2, 4, PixelType::u8), light(2, 2, 4, PixelType::f32);
     for (const int y : {0, 1}) {
         set<uint8_t>(codes, 0, y, {200, 0, 0, 255});
@@ -169,10 +172,30 @@ TEST(Warp, MixesOpaqueColourAndLightLinearly) {
         set<float>(light, 0, y, {4, 0, 0, 1});
         set<float>(light, 1, y, {2, 0, 0, 0});
     }
-    EXPECT_EQ(warp(codes, one_pixel(0.25f, 0.5f)).at<uint8_t>(0, 0)[0], 175);
+    EXPECT_EQ(warp(codes, one_pixel(0.25f, 0.5f)).at<uint8_t>(0, 0)[0], 182);
     EXPECT_EQ(warp(codes, one_pixel(0.25f, 0.5f)).at<uint8_t>(0, 0)[3], 255);
     EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[0], 3.5f);
     EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[3], 0.75f);
+}
+
+/// Pixels of one code keep it, wherever they are mixed.
+template <class T>
+void expect_codes_kept(PixelType type) {
+    for (int code = 0; code <= std::numeric_limits<T>::max(); code += std::max(1, code / 50)) {
+        Image drawn(2, 2, 4, type);
+        const int alpha = std::numeric_limits<T>::max();
+        for (const int y : {0, 1})
+            for (const int x : {0, 1}) set<T>(drawn, x, y, {code, code, 7, alpha});
+        drawn.at<T>(1, 1)[2] = 9;  // All of them are mixed.
+        const Image mixed = warp(drawn, one_pixel(0.3f, 0.7f));
+        EXPECT_EQ(mixed.at<T>(0, 0)[0], code);
+        EXPECT_EQ(mixed.at<T>(0, 0)[3], alpha);
+    }
+}
+
+TEST(Warp, KeepsWhatIsOfOneColour) {
+    expect_codes_kept<uint8_t>(PixelType::u8);
+    expect_codes_kept<uint16_t>(PixelType::u16);
 }
 
 // Next to a marked pixel the nearest is taken, marked or not.
@@ -183,7 +206,7 @@ TEST(Warp, TakesTheNearestPixelWhereNothingMayMix) {
         set<uint8_t>(codes, 1, y, {100, 0, 0, 255});
     }
     const LensMap left = one_pixel(0.25f, 0.5f), right = one_pixel(0.75f, 0.5f);
-    EXPECT_EQ(warp(codes, left, &marks).at<uint8_t>(0, 0)[0], 175);
+    EXPECT_EQ(warp(codes, left, &marks).at<uint8_t>(0, 0)[0], 182);
     marks.at<uint8_t>(1, 1)[0] = 255;
     EXPECT_EQ(warp(codes, left, &marks).at<uint8_t>(0, 0)[0], 200);
     EXPECT_EQ(warp(codes, right, &marks).at<uint8_t>(0, 0)[0], 100);

@@ -8,6 +8,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "easypbr/core/color.h"
+#include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::app {
@@ -96,26 +98,46 @@ Camera drawn_before(const Camera& before, const Camera& now, const LensMap& map)
 
 namespace {
 
+/// Light of the sRGB codes, from 0 to 1.
 template <class T>
-T rounded(float value) {
-    if constexpr (std::is_integral_v<T>)
-        return T(std::lround(value));
-    else
-        return value;
+const float* light_of_codes() {
+    if constexpr (std::is_same_v<T, uint8_t>) {
+        return srgb8_table();
+    } else {
+        static const std::vector<float> table = [] {
+            constexpr size_t most = std::numeric_limits<T>::max();
+            std::vector<float> values(most + 1);
+            for (size_t i = 0; i <= most; ++i) values[i] = linear_from_srgb(float(i) / float(most));
+            return values;
+        }();
+        return table.data();
+    }
 }
 
-/// Straight colour of integer codes counts as far as it covers its pixel: as it is mixed, it is multiplied by
-/// alpha.
+/// Mixes what codes stand for: light, which counts as far as it covers its pixel.
 template <class T, class Mix>
-void mix_straight(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
-    const float alpha = mix(near[0][3], near[1][3], near[2][3], near[3][3]);
-    to[3] = rounded<T>(alpha);
-    for (int c = 0; c < 3; ++c) {
-        const auto covered = [&](size_t i) { return float(near[i][c]) * float(near[i][3]); };
-        // A mean of codes; rounding alone may lead beyond the largest.
-        const float color = alpha > 0 ? mix(covered(0), covered(1), covered(2), covered(3)) / alpha : 0;
-        to[c] = rounded<T>(std::clamp(color, 0.0f, float(std::numeric_limits<T>::max())));
+void mix_pixels(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
+    const auto is_first = [&](const T* pixel) { return std::equal(pixel, pixel + 4, near[0]); };
+    if (std::ranges::all_of(near, is_first)) {
+        std::copy_n(near[0], 4, to);
+        return;
     }
+    constexpr float most = std::numeric_limits<T>::max();
+    const float* const light = light_of_codes<T>();
+    const float alpha = mix(near[0][3], near[1][3], near[2][3], near[3][3]);
+    to[3] = T(std::lround(alpha));
+    for (int c = 0; c < 3; ++c) {
+        const auto covered = [&](size_t i) { return light[near[i][c]] * float(near[i][3]); };
+        const float mixed = alpha > 0 ? mix(covered(0), covered(1), covered(2), covered(3)) / alpha : 0;
+        // A mean of values from 0 to 1; rounding alone may lead beyond them.
+        to[c] = T(std::lround(srgb_from_linear(std::clamp(mixed, 0.0f, 1.0f)) * most));
+    }
+}
+
+/// Of premultiplied light.
+template <class Mix>
+void mix_pixels(const std::array<const float*, 4>& near, Mix&& mix, float* to) {
+    for (int c = 0; c < 4; ++c) to[c] = mix(near[0][c], near[1][c], near[2][c], near[3][c]);
 }
 
 /// Whether one of four neighbours, the upper left one at (x, y), is marked.
@@ -126,7 +148,6 @@ bool touches(const Image& marks, int x, int y) {
 
 template <class T>
 void warp_pixels(const Image& drawn, const LensMap& map, const Image* exact, Image& picture) {
-    const int channels = drawn.channels();
     parallel_for(map.source.size(), 1 << 12, [&](size_t i) {
         const Vec2 p = map.source[i];
         const int x = std::clamp(int(std::floor(p.x())), 0, drawn.width() - 2);
@@ -137,19 +158,12 @@ void warp_pixels(const Image& drawn, const LensMap& map, const Image* exact, Ima
         };
         const std::array<const T*, 4> near = {drawn.at<T>(x, y), drawn.at<T>(x + 1, y), drawn.at<T>(x, y + 1),
                                               drawn.at<T>(x + 1, y + 1)};
-        T* to = picture.pixels<T>().data() + i * size_t(channels);
+        T* to = picture.pixels<T>().data() + 4 * i;
         if (exact && touches(*exact, x, y)) {
-            std::copy_n(drawn.pixels<T>().data() + map.nearest(i) * size_t(channels), channels, to);
+            std::copy_n(drawn.pixels<T>().data() + 4 * map.nearest(i), 4, to);
             return;
         }
-        if constexpr (std::is_integral_v<T>) {
-            const bool is_opaque = channels != 4 || std::ranges::all_of(near, [](const T* pixel) {
-                                       return pixel[3] == std::numeric_limits<T>::max();
-                                   });
-            if (!is_opaque) return mix_straight(near, mix, to);
-        }
-        for (int c = 0; c < channels; ++c)
-            to[c] = rounded<T>(mix(near[0][c], near[1][c], near[2][c], near[3][c]));
+        mix_pixels(near, mix, to);
     });
 }
 
