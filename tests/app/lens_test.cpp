@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 
+#include "easypbr/core/error.h"
 #include "easypbr/scene/motion.h"
 
 namespace easypbr::app::lens_test {
@@ -109,6 +111,32 @@ TEST(DrawnBefore, WithoutALensIsTheCameraItself) {
     EXPECT_EQ(drawn_before(orthographic, lens, lens_map(lens, size)).projection, Projection::orthographic);
     const Camera plain = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
     EXPECT_FALSE(drawn_before(plain, lens, lens_map(lens, size)).intrinsics);
+}
+
+/// The corner of a fisheye's picture, `side` pixels, whose far corner is 79.6 degrees (1.39) off the axis.
+Camera rim_of_fisheye(double focal, int side) {
+    const double centre = side - 1.39 * focal / std::sqrt(2.0);
+    Camera camera = pinhole();
+    camera.intrinsics = Intrinsics{focal, focal, centre, centre, side, side};
+    camera.distortion = Distortion::from_coefficients(DistortionModel::fisheye, {0, 0, 0, 0});
+    return camera;
+}
+
+// The far corner has slopes of 5.5 / sqrt(2) = 3.87 along both axes. The near one, 1000 pixels before it, is
+// 1.39 - 1000 sqrt(2) / 20000 = 1.319 off the axis, with slopes of 3.9 / sqrt(2) = 2.75: about 1.1 * 20000 =
+// 22000 pixels a side are drawn. Of 2000 pixels it is 35000, which is less than 65536, but too many in all.
+TEST(LensMap, RefusesMoreDrawnPixelsThanAPictureHas) {
+    const LensMap fits = lens_map(rim_of_fisheye(20000, 1000), {1000, 1000});
+    EXPECT_GT(fits.drawn_size.minCoeff(), 20000);
+    EXPECT_LE(int64_t(fits.drawn_size.x()) * fits.drawn_size.y(), int64_t(1) << 30);
+    try {
+        lens_map(rim_of_fisheye(20000, 2000), {2000, 2000});
+        ADD_FAILURE() << "no error";
+    } catch (const ArgumentError& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("2000x2000"), message.npos) << message;
+        EXPECT_NE(message.find("1073741824 in all"), message.npos) << message;
+    }
 }
 
 /// One pixel, whose place in a drawn picture of 2 x 2 is (x, y).

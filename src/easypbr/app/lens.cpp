@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "easypbr/app/tiled_picture.h"
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -39,10 +40,12 @@ void choose_drawn(const Camera& camera, const std::vector<Vec2d>& slopes, LensMa
     const Vec2d within(K(0, 2) - std::floor(K(0, 2)), K(1, 2) - std::floor(K(1, 2)));
     const Vec2d low = (box.min().cwiseProduct(focal) + within).array().floor() - 1 - within.array(),
                 high = (box.max().cwiseProduct(focal) + within).array().ceil() + 1 - within.array();
-    if ((high - low).maxCoeff() > max_image_side - 1)
+    const Vec2d drawn_size = (high - low).array() + 1;
+    if (drawn_size.maxCoeff() > max_image_side || drawn_size.prod() > double(max_picture_pixels))
         throw ArgumentError(fmt::format(
-            "camera distortion: the picture without it would have {:.0f} x {:.0f} pixels, more than {}",
-            high.x() - low.x(), high.y() - low.y(), max_image_side));
+            "camera distortion: a picture of {}x{} pixels is drawn as one of {:.0f}x{:.0f} without it, more "
+            "than {} a side or {} in all; ask for a smaller picture, or for one nearer to the optical axis",
+            map.size.x(), map.size.y(), drawn_size.x(), drawn_size.y(), max_image_side, max_picture_pixels));
     map.drawn = camera;
     map.drawn.distortion.reset();
     map.drawn_size = (high - low).array().round().cast<int>() + 1;

@@ -26,7 +26,8 @@ struct LensMap {
 };
 
 /// The map of a camera for a picture of this size. Throws ArgumentError where the lens has no inverse
-/// (Distortion::undistort) or when the picture to draw would be larger than `max_image_side`.
+/// (Distortion::undistort), or when the picture to draw would be larger than `max_image_side` or
+/// `max_picture_pixels`.
 LensMap lens_map(const Camera& camera, Vec2i size);
 
 /// The camera of the picture before as the picture of `now` is drawn, whose map this is: without distortion
