@@ -134,3 +134,20 @@ def test_no_file_takes_the_place_of_a_closed_stream(environment, box, tmp_path):
     done = subprocess.run([str(BINARY), "info", str(box)], env=environment, timeout=300, preexec_fn=lambda: os.close(1),
                           stderr=subprocess.PIPE, text=True)
     assert done.returncode == 1 and done.stderr.startswith("easypbr: error: ")
+
+
+@pytest.mark.parametrize("command", ["render", "convert"])
+def test_names_that_the_file_system_does_not_take(easypbr, box, tmp_path, command):
+    """A file's name has 255 bytes at most, on all file systems of Linux that hold the tests. The messages are strerror()'s."""
+    output = ["-o"] if command == "render" else []
+    extension = ".png" if command == "render" else ".ply"
+    long, loop = "a" * 252 + extension, "loop" + extension
+    (tmp_path / loop).symlink_to(loop)
+    for name, reason in ((long, "File name too long"), (loop, "Too many levels of symbolic links")):
+        for path in (name, f"{name}/in{extension}"):
+            done = easypbr(command, box, *output, path, code=1)
+            assert f"easypbr: error: cannot write {path}: {reason}" in done.stderr
+
+
+def test_an_unknown_command_of_a_long_name(easypbr):
+    assert "easypbr: error: unknown command 'aaa" in easypbr("a" * 256, code=2).stderr

@@ -156,3 +156,18 @@ def test_a_recording_is_finished_where_it_began(recorder, tmp_path, monkeypatch)
     # ISO/IEC 14496-12: "moof" begins a fragment; an ordinary file has none.
     assert b"moof" not in data and data.index(b"moov") < data.index(b"mdat")
     assert frames_of(tmp_path / "a.mp4") == 1
+
+
+@pytest.mark.parametrize("old", [False, True])
+def test_a_size_that_no_video_has_names_the_video(tmp_path, monkeypatch, old):
+    """Not the file beside the old one that it would be written into."""
+    monkeypatch.chdir(tmp_path)
+    if old:
+        (tmp_path / "a.mp4").write_bytes(b"the old one")
+    scene = Scene()
+    scene.show(shapes.box(), "box")
+    recorder = Viewer((16386, 2), {"image.samples": 1}, scene=scene).recorder
+    with pytest.raises(easypbr.ArgumentError, match="^cannot write a.mp4: expected a size from 2x2 to 16384x16384, got 16386x2"):
+        recorder.start("a.mp4")
+        recorder.add_frame()
+    assert names_in(tmp_path) == ["a.mp4"] * old

@@ -131,8 +131,9 @@ void take_over(Session& session, const io::SettingsFile& file) {
 
 void load_settings(Session& session, const fs::path& path) {
     const io::SettingsFile file = io::load_settings(path);
+    std::error_code unreadable;  // Where the file is needed, reading it reports that.
     for (const auto& [source, hash] : file.files)
-        if (fs::exists(source) && io::hash_file(source) != hash)
+        if (fs::exists(source, unreadable) && io::hash_file(source) != hash)
             log_warning(fmt::format("{} is not the file that {} was saved with: its content has changed",
                                     source, path.string()));
     take_over(session, file);

@@ -43,7 +43,8 @@ std::optional<Number> number_in(const std::string& name) {
 }
 
 bool is_folder(const fs::path& path) {
-    return !path.has_filename() || fs::is_directory(path) || extension_of(path).empty();
+    std::error_code unreadable;  // The check before writing reports it.
+    return !path.has_filename() || fs::is_directory(path, unreadable) || extension_of(path).empty();
 }
 
 /// The path with a number in its name.
@@ -174,7 +175,8 @@ class VideoFrames final : public FrameWriter {
 /// The folder of numbered pictures, which may be made.
 void check_folder(const fs::path& pattern) {
     const fs::path folder = pattern.parent_path();
-    if (folder.empty() || fs::is_directory(folder))
+    std::error_code unreadable;  // The check reports it.
+    if (folder.empty() || fs::is_directory(folder, unreadable))
         check_writable(frame_path(pattern, 0));
     else
         check_writable(fs::path(folder.string()).lexically_normal());

@@ -45,7 +45,8 @@ std::vector<std::string> option_names(const CLI::App& command) {
         throw UsageError("expected a command: " + fmt::format("{}", fmt::join(subcommand_names(app), ", ")));
     std::string hint = did_you_mean(rest.front(), subcommand_names(app));
     if (rest.front().starts_with("-")) hint = did_you_mean(rest.front(), option_names(app));
-    if (hint.empty() && fs::exists(rest.front()))
+    std::error_code unreadable;
+    if (hint.empty() && fs::exists(rest.front(), unreadable))
         hint = fmt::format(" (did you mean 'easypbr render {}'?)", rest.front());
     throw UsageError(fmt::format("unknown command '{}'{}; expected one of {}", rest.front(), hint,
                                  fmt::join(subcommand_names(app), ", ")));

@@ -73,11 +73,11 @@ std::optional<VideoFile> VideoFile::create(const fs::path& path) {
     return create_at(path, fs::absolute(place), usual_access);
 }
 
-VideoFile VideoFile::create_part(const fs::path& target) {
+VideoFile VideoFile::create_part(const fs::path& target, const fs::path& name) {
     const mode_t mode = access_beside(target);
     for (int number = 1;; ++number) {
         const fs::path part = part_path(target, number);
-        if (auto file = create_at(part, fs::absolute(part), mode)) return std::move(*file);
+        if (auto file = create_at(name, fs::absolute(part), mode)) return std::move(*file);
     }
 }
 
@@ -102,8 +102,8 @@ bool VideoFile::is_in_place() const {
 
 void VideoFile::require_in_place() const {
     if (!is_in_place())
-        throw FileError(fmt::format("cannot write {}: the file was removed or replaced while it was written",
-                                    name_.string()));
+        throw FileError(fmt::format("cannot write {}: {} was removed or replaced while it was written",
+                                    name_.string(), path_.filename().string()));
 }
 
 void VideoFile::release() {

@@ -18,8 +18,8 @@ class VideoFile {
     static std::optional<VideoFile> create(const fs::path& path);
     /// A file beside a target that is there: by its extension "clip.part.mp4" can be played, or
     /// "clip.part-2.mp4" where that is there already. Who may not read the target may not read it either.
-    /// Throws FileError.
-    static VideoFile create_part(const fs::path& target);
+    /// `name`: of the target, as it was given. Throws FileError.
+    static VideoFile create_part(const fs::path& target, const fs::path& name);
     /// A file of a temporary name beside a target, for its owner alone. Throws FileError.
     static VideoFile create_temporary(const fs::path& target);
 

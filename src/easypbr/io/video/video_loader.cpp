@@ -122,7 +122,7 @@ std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions
     const fs::path target = real_target(path);
     if (is_being_recorded(target))
         throw FileError(fmt::format("cannot write {}: it is being recorded", path.string()));
-    return std::make_unique<ReplacingVideo>(target, VideoFile::create_part(target), options);
+    return std::make_unique<ReplacingVideo>(target, VideoFile::create_part(target, path), options);
 }
 
 std::unique_ptr<VideoStream> open_video_stream(const VideoStreamOptions& options) {

@@ -35,8 +35,9 @@ ScanLayout scan_layout_of(const fs::path& scan) {
 std::optional<fs::path> find_labels(const fs::path& scan) {
     const fs::path folder = scan.parent_path(), name = scan.stem().string() + ".label";
     const fs::path above = fs::absolute(scan).parent_path().parent_path();
+    std::error_code ignored;  // A longer name than the file system has is that of no file.
     for (const fs::path& path : {above / "labels" / name, folder / name})
-        if (fs::exists(path)) return path;
+        if (fs::exists(path, ignored)) return path;
     return {};
 }
 
