@@ -152,7 +152,8 @@ TEST(ElementColors, SayWhatTheObjectLacks) {
     mesh.style.color_min = 2.0f;
     mesh.style.color_max = 1.0f;
     mesh.style.color_by = ColorBy::height;
-    EXPECT_EQ(message_of([&] { colors(mesh); }), "style: expected color_min not above color_max, got 2 and 1");
+    EXPECT_EQ(message_of([&] { colors(mesh); }),
+              "style: expected color_min not above color_max, got 2 and 1");
 }
 
 TEST(ElementColors, SayWhatNoObjectHas) {

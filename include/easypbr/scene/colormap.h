@@ -129,8 +129,8 @@ inline int color_index(float value, const ValueRange& range) {
 ValueRange automatic_range(const Array1f& values, bool diverging = false,
                            ColorScale scale = ColorScale::linear, double base = 0);
 
-/// As far as they are given, `min` and `max`, true values, replace the automatic range's. Equal ends are the middle
-/// of a range round them, as one single value is; so is an end that lies beyond all values. Throws
+/// As far as they are given, `min` and `max`, true values, replace the automatic range's. Equal ends are the
+/// middle of a range round them, as one single value is; so is an end that lies beyond all values. Throws
 /// ArgumentError where `min` is above `max`, and for an end of a logarithmic scale that is not above 0.
 ValueRange value_range(const Array1f& values, std::optional<float> min, std::optional<float> max,
                        bool diverging = false, ColorScale scale = ColorScale::linear, double base = 0);

@@ -9,7 +9,7 @@ namespace easypbr::render {
 namespace {
 
 /// More planes than that take longer than they are worth.
-constexpr Eigen::Index most_faces = 64;
+constexpr Eigen::Index most_convex_faces = 64;
 /// Places are in a plane that are nearer to it than that, in diagonals of the mesh.
 constexpr double flat = 1e-6;
 
@@ -18,7 +18,7 @@ Vec3d vertex(const Array3f& V, Eigen::Index i) {
 }
 
 /// None of a face without area.
-std::optional<FacePlane> plane_of(const Array3f& V, const Array3i& F, Eigen::Index face) {
+std::optional<FacePlane> face_plane(const Array3f& V, const Array3i& F, Eigen::Index face) {
     const Vec3d a = vertex(V, F(face, 0)), b = vertex(V, F(face, 1)), c = vertex(V, F(face, 2));
     const Vec3d normal = (b - a).cross(c - a);
     const double length = normal.norm();
@@ -49,10 +49,10 @@ std::vector<FacePlane> convex_faces(const Array3f& V, const Array3i& F) {
     const Box3d box = gpu::box_of(V);
     if (F.empty() || box.isEmpty()) return {};
     const double rounding = flat * box.diagonal().norm();
-    const bool has_few = F.rows() <= most_faces;
+    const bool has_few = F.rows() <= most_convex_faces;
     std::vector<FacePlane> planes;
     for (Eigen::Index face = 0; face < F.rows(); ++face) {
-        std::optional<FacePlane> plane = plane_of(V, F, face);
+        std::optional<FacePlane> plane = face_plane(V, F, face);
         if (!plane) continue;
         const Sides sides = sides_of(*plane, V, rounding, !has_few);
         const FacePlane turned{-plane->normal, -plane->offset};
