@@ -37,7 +37,7 @@ def as_mesh(what: Any, strict: bool = False) -> Mesh:
 
     A Mesh is returned as it is, in a list a copy of it; arrays are copied once. Points without a finite position are left out
     with a warning, or raise ArgumentError if `strict`, of a file FormatError. Raises ArgumentError for what cannot be drawn,
-    and for a list of two arrays that may be clouds as well as the vertices and faces of one mesh."""
+    and for a list of arrays whose first two may be clouds as well as the vertices and faces of one mesh."""
     return converted(what, strict)[0]
 
 
@@ -142,14 +142,20 @@ def _of_vertices_and_faces(V: NDArray[Any], given: Any, make: Maker) -> Mesh:
 
 
 def _refuse_vertices_and_faces(V: NDArray[Any], parts: list[Any], is_tuple: bool) -> None:
-    """Raises ArgumentError for a list, or for more than two parts, that may be meant as the arrays of one mesh."""
+    """Raises ArgumentError for a list, or for more than two parts, that may be meant as the arrays of one mesh. Of points with
+    whole numbers the second part is a cloud where one row has a number twice, as points of a grid have and no face has."""
     faces = Faces(parts[1])
-    if parts[1] is None or V.dtype.kind != "f" or V.shape[1] != 3 or not (faces.are_rows() and faces.are_integers()):
+    if parts[1] is None or V.shape[1] != 3 or not (faces.are_rows() and faces.are_integers()):
+        return
+    if V.dtype.kind != "f" and not faces.have_distinct_corners():
         return
     are_of_vertices = faces.are_below(len(V))
     got = ", ".join(_described(part) for part in parts)
     if len(parts) > 2 and (is_tuple or are_of_vertices):
-        raise ArgumentError(f"({got}): expected (V, F); give further arrays in a dict: {{'V': V, 'F': F, 'C': C}}")
+        raise ArgumentError(
+            f"{f'({got})' if is_tuple else f'[{got}]'}: expected (V, F); give further arrays in a dict: "
+            "{'V': V, 'F': F, 'C': C}, and clouds as a list of dicts, [{'V': a}, {'V': b}]"
+        )
     if are_of_vertices:
         raise ArgumentError(
             f"[{got}], a mesh or two clouds: expected a tuple, (V, F), for a mesh of vertices and faces, or a list of dicts, "

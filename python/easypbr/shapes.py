@@ -65,7 +65,7 @@ def camera_path(
 def image_plane(image: ArrayLike, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
     """An image in the xy plane around the origin, facing +z, unlit: shown as it is, past exposure and tone curve.
 
-    `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by
+    `image` is an array of height x width (x 1 to 4), uint8, uint16 or linear floats. One of width and height is enough; by
     default the plane is 1 high.
     """
     image = _picture(image, "image_plane: image")

@@ -156,9 +156,13 @@ def _is_torch(what: Any) -> bool:
     return type(what).__module__.split(".")[0] == "torch"
 
 
+#: Types that are told at once: lists of faces have many of them.
+_NO_ARRAYS = frozenset((int, float, str, list, tuple))
+
+
 def is_array(what: Any) -> bool:
     """Whether this is an array of numpy or of another library, by the protocols that numpy takes or by CUDA's."""
-    if isinstance(what, (np.generic, type)):
+    if type(what) in _NO_ARRAYS or isinstance(what, (np.generic, type)):
         return False
     return isinstance(what, np.ndarray) or any(
         hasattr(what, name) for name in ("__array__", "__array_interface__", "__dlpack__", "__cuda_array_interface__")
@@ -191,7 +195,7 @@ def as_numpy(what: Any) -> Any:
                 raise ArgumentError(f"a {kind}: expected numbers that numpy takes by DLPack: {error}") from error
     if hasattr(what, "get"):  # CuPy
         return what.get()
-    return _known(np.asarray(what))
+    return _by_numpy(what)
 
 
 def _by_numpy(what: Any) -> NDArray[Any]:
@@ -202,14 +206,34 @@ def _by_numpy(what: Any) -> NDArray[Any]:
 
 
 def array_of(what: Any, name: str) -> NDArray[Any]:
-    """as_numpy() of what may be nested lists, too. Raises ArgumentError, which begins with the name, for rows of different
-    lengths."""
+    """as_numpy() of what may be nested lists or a list of arrays, too. Raises ArgumentError, which begins with the name, for
+    rows of different lengths."""
     try:
+        if isinstance(what, (tuple, list)) and len(what) > 0 and is_array(what[0]):
+            return np.asarray([as_numpy(row) for row in what])
         return np.asarray(as_numpy(what))
     except ArgumentError:
         raise
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"{name}: expected an array of numbers: {error}") from error
+
+
+def rows_of(given: "tuple[Any, ...] | list[Any]", name: str) -> NDArray[Any] | list[NDArray[Any]]:
+    """array_of() where all rows have the same shape; else an array for each."""
+    if all(isinstance(row, (tuple, list)) for row in given) and len({len(row) for row in given}) == 1:
+        try:
+            array = np.asarray(given)
+            if array.ndim == 2 and array.dtype.kind in "iuf":
+                return array
+        except (TypeError, ValueError):
+            pass  # They hold more than numbers: below an error names the row's.
+    rows = [row if _is_plain(row) else array_of(row, name) for row in given]
+    return rows if len({row.shape for row in rows}) > 1 else np.asarray(rows)
+
+
+def _is_plain(what: Any) -> bool:
+    """Whether as_numpy() has nothing to convert."""
+    return type(what) is np.ndarray and what.dtype.kind in "iuf"
 
 
 def _of_tensor(tensor: Any) -> NDArray[Any]:

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 #include "easypbr/core/error.h"
@@ -139,6 +140,18 @@ TEST(LensMap, RefusesMoreDrawnPixelsThanAPictureHas) {
     }
 }
 
+// A row of 64 x 48 pixels is shifted by skew / fy per row: 47 rows by 1e6 / 79.7 each are 590,000 pixels.
+TEST(LensMap, RefusesSkewInTheSameWords) {
+    try {
+        lens_map(with_lens({}, 1e6), size);
+        ADD_FAILURE() << "no error";
+    } catch (const ArgumentError& error) {
+        const std::string message = error.what();
+        EXPECT_TRUE(message.starts_with("camera: a picture of 64x48 pixels is drawn as one of ")) << message;
+        EXPECT_NE(message.find(" without distortion and skew, "), message.npos) << message;
+    }
+}
+
 /// One pixel, whose place in a drawn picture of 2 x 2 is (x, y).
 LensMap one_pixel(float x, float y) {
     LensMap map;
@@ -204,6 +217,39 @@ TEST(Warp, MixesOpaqueColourAsLight) {
     EXPECT_EQ(warp(codes, one_pixel(0.25f, 0.5f)).at<uint8_t>(0, 0)[3], 255);
     EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[0], 3.5f);
     EXPECT_EQ(warp(light, one_pixel(0.25f, 0.5f)).at<float>(0, 0)[3], 0.75f);
+}
+
+double light_of(double code) {
+    const double c = code / 255;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+double code_of(double light) {
+    return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+}
+
+// All neighbouring codes and all distances from black, by 64 steps of light each.
+TEST(Warp, TakesTheNearestCodeOfEachLight) {
+    constexpr int steps = 64;
+    for (int code = 0; code < 255; ++code)
+        for (const int other : {code + 1, 0})
+            for (int i = 0; i < steps; ++i) {
+                Image codes(2, 2, 4, PixelType::u8);
+                for (const int y : {0, 1}) {
+                    set<uint8_t>(codes, 0, y, {code, 0, 0, 255});
+                    set<uint8_t>(codes, 1, y, {other, 0, 0, 255});
+                }
+                const float part = float(i) / steps;
+                const double expected =
+                    code_of((1 - double(part)) * light_of(code) + double(part) * light_of(other));
+                // Light in single precision is some 1e-7 off, of which the curve makes 255 * 12.92 at most.
+                EXPECT_NEAR(warp(codes, one_pixel(part, 0.5f)).at<uint8_t>(0, 0)[0], expected, 0.5 + 4e-4)
+                    << code << " " << other << " " << i;
+            }
+}
+
+TEST(Warp, RefusesOtherThanFourChannels) {
+    EXPECT_THROW(warp(Image(2, 2, 3, PixelType::u8), one_pixel(0.5f, 0.5f)), std::logic_error);
 }
 
 /// Pixels of one code keep it, wherever they are mixed.

@@ -1,14 +1,17 @@
 // Files of 3D Gaussian splats: PLY as the reference implementation writes it, and .splat.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/tables/splat_names.h"
 #include "io/bytes.h"
 #include "io/ply_builder.h"
 #include "io/same_bits.h"
@@ -178,6 +181,23 @@ std::string splat_file() {
     bytes.add_all<float>({1, 2, 3, 0.1f, 0.2f, 0.3f}).add_all<uint8_t>({255, 128, 0, 51, 255, 128, 0, 192});
     bytes.add_all<float>({-1, -2, -3, 0.4f, 0.5f, 0.6f}).add_all<uint8_t>({0, 0, 0, 255, 128, 128, 128, 128});
     return bytes.str();
+}
+
+// What is written for splats has the names by which readers tell them, beside positions and normals.
+TEST(SplatFiles, WrittenNamesAreThoseOfReaders) {
+    const std::vector<std::string> names = property_names(3);
+    const std::string text = io::encode_ply(read(ply_of("ascii", names)), ".");
+    std::istringstream lines(text.substr(0, text.find("end_header")));
+    const std::string property = "property float ";
+    size_t count = 0;
+    for (std::string line; std::getline(lines, line);) {
+        const std::string name = line.starts_with(property) ? line.substr(property.size()) : "x";
+        if (name.size() <= 2) continue;  // x, nx
+        ++count;
+        EXPECT_TRUE(io::is_splat_name(name)) << name;
+        EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
+    }
+    EXPECT_EQ(count, names.size() - 6);
 }
 
 MeshData read_records(const std::string& text) {

@@ -1,10 +1,17 @@
 // What positions and labels mean is kept, or named as left out: the size of voxels, the map of labels.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/geometry/voxels.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+#include "io/npy_builder.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::voxel_files_test {
@@ -34,6 +41,27 @@ std::string saved(const Mesh& mesh, const fs::path& path) {
     mesh.save(path);
     set_log_sink({});
     return warnings;
+}
+
+struct ReadNpz {
+    float voxel_size = 0;
+    std::string warnings;
+};
+
+/// Of an NPZ file of a triangle's vertices, with this array of a voxel size.
+ReadNpz read_npz(float size, const std::string& shape, bool has_faces) {
+    const std::string V = Bytes().add_all({0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}).str();
+    std::vector<std::pair<std::string, std::string>> entries{
+        {"V.npy", npy("'<f4'", "(3, 3)", V)},
+        {"voxel_size.npy", npy("'<f8'", shape, Bytes().add(double(size)).str())}};
+    if (has_faces)
+        entries.emplace_back("F.npy", npy("'<i4'", "(1, 3)", Bytes().add_all<int32_t>({0, 1, 2}).str()));
+    const std::string bytes = npz(entries);
+    ReadNpz result;
+    set_log_sink([&](LogLevel, std::string_view message) { result.warnings += std::string(message) + "\n"; });
+    result.voxel_size = io::read_npz(io::Source(std::string_view(bytes), "a.npz")).voxel_size;
+    set_log_sink({});
+    return result;
 }
 
 bool names(const std::string& warnings, std::string_view what) {
@@ -78,6 +106,30 @@ TEST(VoxelFiles, NpzOfFacesHasNoVoxels) {
     mesh.F = Array3i::Dense::Zero(1, 3);
     EXPECT_TRUE(names(saved(Mesh(mesh), folder / "v.npz"), "no place for the voxel size"));
     EXPECT_EQ(mesh_in(folder / "v.npz")->voxel_size, 0);
+}
+
+// np.savez(voxel_size=0.3) writes no dimension, this library one.
+TEST(VoxelFiles, NpzHasASizeOfAnyShapeOfOneNumber) {
+    for (const char* shape : {"()", "(1,)", "(1, 1)"}) {
+        const ReadNpz read = read_npz(edge, shape, false);
+        EXPECT_EQ(read.voxel_size, edge) << shape;
+        EXPECT_EQ(read.warnings, "") << shape;
+    }
+}
+
+TEST(VoxelFiles, NpzSaysWhichSizesAreLeftOut) {
+    struct Case {
+        float size;
+        bool has_faces;
+    };
+    for (const Case& c : {Case{edge, true}, Case{-1, false}, Case{0, false}, Case{INFINITY, false}}) {
+        const ReadNpz read = read_npz(c.size, "()", c.has_faces);
+        EXPECT_EQ(read.voxel_size, 0) << c.size;
+        EXPECT_EQ(read.warnings,
+                  "a.npz: array 'voxel_size' is left out: expected a finite number above 0 beside points "
+                  "without faces\n")
+            << c.size;
+    }
 }
 
 TEST(VoxelFiles, AScalarOfThatNameIsNoSize) {

@@ -77,7 +77,7 @@ def test_further_columns_are_those_of_a_text_file(tmp_path):
     ([], "an empty list: there is nothing to show; expected a path"),
     (3, "cannot show a builtins.int: expected a path, an easypbr.Mesh, points"),
     (None, "cannot show a builtins.NoneType"),
-    ((POINTS, [[0, 1, 2]], POINTS), r"expected \(V, F\); give further arrays in a dict"),
+    ((POINTS, [[0, 1, 2]], POINTS), r"^\(40 x 3, list, 40 x 3\): expected \(V, F\); give further arrays in a dict"),
     ({"points": POINTS, "colors": POINTS * 300}, "colours: expected 0 to 1 or 0 to 255, got"),
     ({"points": POINTS, "colors": -POINTS}, "colours: expected 0 to 1 or 0 to 255, got"),
     ({"points": POINTS, "V": POINTS}, "'V' is V, which is given already"),
@@ -159,22 +159,34 @@ def test_arrays_in_a_list_are_clouds(square):
     V, F = square
     whole = np.array([[5, 0, 0], [1, 7, 0], [0, 1, 0], [2, 2, 2]])
     for what in (
-        [POINTS, POINTS], [whole, whole], [whole, whole[:, [2, 0, 1]]], [V.astype(int), F], [V, whole], [V, F.astype(float)],
+        [POINTS, POINTS], [whole, whole], [whole, whole[:, [2, 0, 1]]], [V, whole], [V, F.astype(float)],
         [V, F.astype(float).tolist()], [V, F + 0.5], [V, np.zeros((0, 3))],
     ):  # fmt: skip
         mesh = as_mesh(what)
         assert [len(child.V) for child in mesh.children] == [len(what[0]), len(what[1])]
         assert not any(len(child.F) for child in mesh.children)
     assert len(as_mesh([V, whole, whole]).children) == 3
+    # Points of a grid, which are below the number of points as vertex indices are; no triangle of (0, 0, 0) or (0, 1, 1).
+    grid = np.array([[0, 0, 0], [0, 1, 1], [0, 1, 2], [1, 1, 1]])
+    for what in ([grid, grid], [grid.tolist(), grid.tolist()], [grid, grid, grid], (grid, grid, grid)):
+        assert [len(child.V) for child in as_mesh(what).children] == [4] * len(what)
+    # A polygon of four corners beside a row of three, with a corner twice.
+    with pytest.raises(easypbr.ArgumentError, match="expected as many numbers in each row"):
+        as_mesh([grid, [[0, 1, 2, 0], [0, 1, 2]]])
 
 
 def test_a_list_that_may_be_vertices_and_faces_is_refused(square):
     V, F = square
-    for what in ([V, F], [V, F.tolist()], [V.tolist(), F.tolist()], [V, [[0, 1, 2, 3], [0, 1, 2]]], [V, np.zeros((0, 3), int)]):
+    whole = V.astype(int)
+    for what in (
+        [V, F], [V, F.tolist()], [V.tolist(), F.tolist()], [V, [[0, 1, 2, 3], [0, 1, 2]]], [V, np.zeros((0, 3), int)],
+        [whole, F], [whole.tolist(), F.tolist()], [whole, [[0, 1, 2, 3], [0, 1, 2]]],
+    ):  # fmt: skip
         with pytest.raises(easypbr.ArgumentError, match=r"a tuple, \(V, F\), .* a list of dicts, \[\{'V': a\}, \{'V': b\}\]"):
             as_mesh(what)
-    with pytest.raises(easypbr.ArgumentError, match=r"expected \(V, F\); give further arrays in a dict"):
-        as_mesh([V, F, V])
+    for what, got in (([V, F, V], r"\[4 x 3, 2 x 3, 4 x 3\]"), ((V, F, V), r"\(4 x 3, 2 x 3, 4 x 3\)"), ([whole, F, V], r"\[")):
+        with pytest.raises(easypbr.ArgumentError, match=rf"^{got}.*: expected \(V, F\); .*, and clouds as a list of dicts, \["):
+            as_mesh(what)
     assert [len(child.V) for child in as_mesh([{"V": V}, {"V": F}]).children] == [4, 2]
 
 
@@ -443,7 +455,8 @@ class OfInterface:
 @pytest.mark.parametrize("kind", [OfDlpack, OfArray, OfInterface])
 def test_arrays_without_a_shape(square, kind):
     V, F = square
-    tuples = ((kind(V), kind(F)), (V, kind(F)), (V, [kind(face) for face in F]))
+    tuples = ((kind(V), kind(F)), (V, kind(F)), (V, [kind(face) for face in F]), ([kind(row) for row in V], F),
+              ([kind(row) for row in V], [kind(face) for face in F]))
     for what in (*tuples, {"V": kind(V), "F": kind(F)}, {"V": V, "F": kind(F)}):
         np.testing.assert_array_equal(as_mesh(what).F, F)
         np.testing.assert_array_equal(as_mesh(what).V, V)
@@ -464,10 +477,18 @@ def test_what_is_no_array_of_numpy_is_an_error_of_ours(square):
         def __array__(self, dtype=None, copy=None):
             raise TypeError("not today")
 
+    class BrokenOfCuda(Broken):
+        def __dlpack_device__(self):
+            return (2, 0)
+
+        def __dlpack__(self, **_):
+            raise BufferError("numpy cannot take what lies on a GPU")
+
     V, F = square
-    for what in (Broken(), (Broken(), F), (V, Broken()), {"V": V, "F": Broken()}):
-        with pytest.raises(easypbr.ArgumentError, match="Broken: expected numbers that numpy takes: not today"):
-            as_mesh(what)
+    for kind in (Broken, BrokenOfCuda):
+        for what in (kind(), (kind(), F), (V, kind()), {"V": V, "F": kind()}):
+            with pytest.raises(easypbr.ArgumentError, match=f"{kind.__name__}: expected numbers that numpy takes: not today"):
+                as_mesh(what)
     for what in ({"V": V, "F": 5}, {"V": 5}, {"V": V, "E": 5}):
         with pytest.raises(easypbr.ArgumentError, match="expected (m x 3|n x 3|k x 2)"):
             as_mesh(what)

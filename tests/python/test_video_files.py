@@ -158,6 +158,17 @@ def test_a_recording_is_finished_where_it_began(recorder, tmp_path, monkeypatch)
     assert frames_of(tmp_path / "a.mp4") == 1
 
 
+def test_a_part_of_too_long_a_name_is_named(recorder, tmp_path, monkeypatch):
+    """A name of 252 bytes fits, but not with ".part" in it: a file's name has 255 bytes at most, on all file systems of Linux
+    that hold the tests."""
+    monkeypatch.chdir(tmp_path)
+    stem = "a" * 248
+    (tmp_path / f"{stem}.mp4").write_bytes(b"the old one")
+    with pytest.raises(easypbr.FileError, match=rf"^cannot write {stem}\.mp4: {stem}\.part\.mp4: File name too long$"):
+        recorder.start(f"{stem}.mp4")
+    assert (tmp_path / f"{stem}.mp4").read_bytes() == b"the old one"
+
+
 @pytest.mark.parametrize("old", [False, True])
 def test_a_size_that_no_video_has_names_the_video(tmp_path, monkeypatch, old):
     """Not the file beside the old one that it would be written into."""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..tensors import array_of
+from ..tensors import array_of, rows_of
 
 
 class Faces:
@@ -17,8 +17,7 @@ class Faces:
         #: As make.triangles() takes them.
         self.rows: NDArray[Any] | list[NDArray[Any]] | None = None
         if isinstance(given, (tuple, list)):
-            rows = [array_of(row, "faces") for row in given]
-            self.rows = rows if len({row.shape for row in rows}) > 1 else np.asarray(rows) if rows else None
+            self.rows = rows_of(given, "faces") if given else None
         elif given is not None:
             self.rows = array_of(given, "faces")
         self._parts = [] if self.rows is None else [self.rows] if isinstance(self.rows, np.ndarray) else self.rows
@@ -38,6 +37,13 @@ class Faces:
         return all(
             part.dtype.kind in "iu" or (part.dtype.kind == "f" and bool((part == np.floor(part)).all())) for part in self._parts
         )
+
+    def have_distinct_corners(self) -> bool:
+        """Whether no face has a vertex twice; asked of are_rows()."""
+        if isinstance(self.rows, np.ndarray):
+            corners = np.sort(self.rows, axis=1)
+            return not bool((corners[:, 1:] == corners[:, :-1]).any())
+        return all(len(np.unique(face)) == len(face) for face in self.rows or [])
 
     def are_below(self, count: int) -> bool:
         """Whether all are from 0 to `count` - 1."""

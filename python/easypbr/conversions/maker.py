@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import _easypbr
 from .._easypbr import Mesh
 from ..errors import ArgumentError
-from ..tensors import array_of, as_numpy
+from ..tensors import array_of, as_numpy, rows_of
 
 _log = logging.getLogger("easypbr")
 
@@ -155,10 +155,10 @@ def triangles(faces: Any, V: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | N
     if isinstance(faces, np.ndarray) and faces.dtype == object:
         faces = faces.tolist()  # Polygons of different numbers of corners.
     if not isinstance(faces, np.ndarray):
-        polygons = [array_of(face, "faces") for face in faces]
-        if len({face.shape for face in polygons}) > 1:
+        polygons = rows_of(list(faces), "faces")
+        if not isinstance(polygons, np.ndarray):
             return _cut(_corners(polygons), [len(face) for face in polygons], V)
-        faces = np.asarray(polygons)
+        faces = polygons
     if faces.ndim != 2 or faces.shape[1] <= 3:
         return (faces if faces.size else None), None
     return _cut(faces.ravel(), np.full(len(faces), faces.shape[1]), V)

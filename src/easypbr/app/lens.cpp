@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <type_traits>
 
 #include "easypbr/app/tiled_picture.h"
@@ -43,8 +44,9 @@ void choose_drawn(const Camera& camera, const std::vector<Vec2d>& slopes, LensMa
     const Vec2d drawn_size = (high - low).array() + 1;
     if (drawn_size.maxCoeff() > max_image_side || drawn_size.prod() > double(max_picture_pixels))
         throw ArgumentError(fmt::format(
-            "camera distortion: a picture of {}x{} pixels is drawn as one of {:.0f}x{:.0f} without it, more "
-            "than {} a side or {} in all; ask for a smaller picture, or for one nearer to the optical axis",
+            "camera: a picture of {}x{} pixels is drawn as one of {:.0f}x{:.0f} without distortion and skew, "
+            "more than {} a side or {} in all; ask for a smaller picture, or for one nearer to the optical "
+            "axis",
             map.size.x(), map.size.y(), drawn_size.x(), drawn_size.y(), max_image_side, max_picture_pixels));
     map.drawn = camera;
     map.drawn.distortion.reset();
@@ -117,6 +119,39 @@ const float* light_of_codes() {
     }
 }
 
+/// The nearest sRGB code of 8 bits of light from 0 to 1, without a power per pixel.
+uint8_t code_of_light(float light) {
+    constexpr size_t cells = 4096;
+    struct Table {
+        /// Light from which each code is nearer than the one before.
+        std::array<float, 257> limits;
+        /// The code at the lower end of each cell. On the straight part of the curve, its flattest, codes are
+        /// 1 / (255 * 12.92) = 1 / 3295 apart: no cell holds two limits.
+        std::array<uint8_t, cells + 1> starts;
+    };
+    static const Table table = [] {
+        Table made{};
+        made.limits.back() = std::numeric_limits<float>::infinity();
+        for (size_t code = 1; code < 256; ++code)
+            made.limits[code] = linear_from_srgb((float(code) - 0.5f) / 255);
+        for (size_t cell = 0; cell <= cells; ++cell)
+            made.starts[cell] = uint8_t(std::ranges::upper_bound(made.limits, float(cell) / float(cells)) -
+                                        made.limits.begin() - 1);
+        return made;
+    }();
+    const size_t start = table.starts[size_t(light * float(cells))];
+    return uint8_t(start + size_t(light >= table.limits[start + 1]));
+}
+
+/// The nearest sRGB code of light from 0 to 1.
+template <class T>
+T code_of(float light) {
+    if constexpr (std::is_same_v<T, uint8_t>)
+        return code_of_light(light);
+    else
+        return T(std::lround(srgb_from_linear(light) * float(std::numeric_limits<T>::max())));
+}
+
 /// Mixes what codes stand for: light, which counts as far as it covers its pixel.
 template <class T, class Mix>
 void mix_pixels(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
@@ -125,7 +160,6 @@ void mix_pixels(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
         std::copy_n(near[0], 4, to);
         return;
     }
-    constexpr float most = std::numeric_limits<T>::max();
     const float* const light = light_of_codes<T>();
     const float alpha = mix(near[0][3], near[1][3], near[2][3], near[3][3]);
     to[3] = T(std::lround(alpha));
@@ -133,7 +167,7 @@ void mix_pixels(const std::array<const T*, 4>& near, Mix&& mix, T* to) {
         const auto covered = [&](size_t i) { return light[near[i][c]] * float(near[i][3]); };
         const float mixed = alpha > 0 ? mix(covered(0), covered(1), covered(2), covered(3)) / alpha : 0;
         // A mean of values from 0 to 1; rounding alone may lead beyond them.
-        to[c] = T(std::lround(srgb_from_linear(std::clamp(mixed, 0.0f, 1.0f)) * most));
+        to[c] = code_of<T>(std::clamp(mixed, 0.0f, 1.0f));
     }
 }
 
@@ -186,6 +220,7 @@ Image pick_nearest(const Image& drawn, const LensMap& map) {
 
 Image warp(const Image& drawn, const LensMap& map, const Image* exact) {
     if (map.is_identity()) return drawn;
+    if (drawn.channels() != 4) throw std::logic_error("warp: expected RGBA");
     Image picture(map.size.x(), map.size.y(), drawn.channels(), drawn.type());
     switch (drawn.type()) {
         case PixelType::u8:

@@ -49,7 +49,7 @@ class LensCache {
 /// The picture as the lens shows it: bilinear, 0 where nothing was drawn. RGBA of an Encoding's type:
 /// integers are sRGB codes with straight alpha, which are mixed as the light that they stand for, weighted by
 /// alpha. `exact`: of the drawn picture's size, u8, one channel; where one of the four neighbours has not 0
-/// the nearest pixel is taken. Null: nowhere.
+/// the nearest pixel is taken. Null: nowhere. Throws std::logic_error for other than 4 channels.
 Image warp(const Image& drawn, const LensMap& map, const Image* exact = nullptr);
 
 /// The nearest drawn pixel of each: for values that must not be mixed. f32 only.

@@ -8,9 +8,10 @@
 
 namespace easypbr::io {
 
-/// Whether the format has a place for the size of voxels: GLB, and NPZ for a mesh without faces.
+/// Whether a mesh has a voxel size that the format has a place for: GLB, and NPZ for a mesh without faces.
 bool keeps_voxel_size(const MeshData& mesh, const std::string& extension);
 
+/// What left_out() calls the voxel size.
 inline constexpr const char* left_out_voxel_size = "the voxel size";
 
 /// What of a mesh is left out, beside faces, splats, and left_out_of_gltf(). Formats without materials have

@@ -214,7 +214,7 @@ void require_vertices(const Mesh& mesh, const fs::path& path) {
         throw ArgumentError(fmt::format("cannot write {}: the mesh has no vertices", path.string()));
 }
 
-/// Whether a mesh of the tree is voxels: one of several sizes is none.
+/// Whether any mesh of the tree is voxels. Joined, those of different sizes have no size.
 bool has_voxels(const Mesh& mesh) {
     bool has_some = false;
     for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {

@@ -26,12 +26,14 @@ constexpr bool has_misfits(ScalarType type) {
     return type > ScalarType::int32;
 }
 
-/// Counts what float32 or an integer makes of the values of a block.
-void count_block(ValueBlock block, ScalarType type, bool swap, const Column& column, ColumnCounts& counts) {
+/// Counts what float32 or an integer makes of the values of a block. `values`: room for them, kept from block
+/// to block.
+void count_block(ValueBlock block, ScalarType type, bool swap, const Column& column, ColumnCounts& counts,
+                 std::vector<double>& values) {
     const bool are_integers = column.integers && has_misfits(type);
     if (!column.rounding && !are_integers) return;
     if (are_integers) block.scale = 1, block.shift = 0;
-    std::vector<double> values(block.rows);
+    values.resize(block.rows);
     block.out_stride = 1;
     copy_values(block, type, swap, values.data());
     if (column.rounding)
@@ -163,6 +165,7 @@ class ElementReader {
     bool read_uniform_rows(const char* body, const std::vector<size_t>& widths, size_t begin, size_t end) {
         const size_t stride = widths.back();
         const char* in = body + begin * stride;
+        std::vector<double> room;
         for (size_t i = 0; i < element_.properties.size(); ++i) {
             const Property& property = element_.properties[i];
             const Column& column = plan_.columns[i];
@@ -179,7 +182,7 @@ class ElementReader {
                                    column.shift};
             copy_scalars(block, property.type, swap_, column, begin * column.stride);
             ColumnCounts counts;
-            count_block(block, property.type, swap_, column, counts);
+            count_block(block, property.type, swap_, column, counts, room);
             add_counts(counts, property, column, misfits_);
             if (column.indices)
                 copy_values(block, property.type, swap_, column.indices->values.data() + begin * widths[i]);
@@ -229,7 +232,8 @@ class ElementReader {
         parallel_chunks(element_.count, record_grain, [&](size_t begin, size_t end) {
             const char* in = starts[begin / record_grain];
             std::vector<ColumnCounts> counts(plan_.columns.size());
-            for (size_t row = begin; row < end; ++row) in = read_row(in, row, counts);
+            std::vector<double> room;
+            for (size_t row = begin; row < end; ++row) in = read_row(in, row, counts, room);
             for (size_t i = 0; i < counts.size(); ++i)
                 add_counts(counts[i], element_.properties[i], plan_.columns[i], misfits_);
             progress_.advance(size_t(in - starts[begin / record_grain]));
@@ -271,7 +275,8 @@ class ElementReader {
         add(column.values);
     }
 
-    const char* read_row(const char* in, size_t row, std::vector<ColumnCounts>& counts) const {
+    const char* read_row(const char* in, size_t row, std::vector<ColumnCounts>& counts,
+                         std::vector<double>& room) const {
         for (size_t i = 0; i < element_.properties.size(); ++i) {
             const Property& property = element_.properties[i];
             const Column& column = plan_.columns[i];
@@ -282,7 +287,7 @@ class ElementReader {
             }
             const ValueBlock block{in, 0, 1, width, 0, column.scale, column.shift};
             copy_scalars(block, property.type, swap_, column, row * column.stride);
-            count_block(block, property.type, swap_, column, counts[i]);
+            count_block(block, property.type, swap_, column, counts[i], room);
             if (column.indices)
                 copy_values(block, property.type, swap_,
                             column.indices->values.data() + column.indices->first[row]);
@@ -328,6 +333,7 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
     const size_t stride = smallest_row(*plan.element);
     parallel_chunks(count, record_grain, [&](size_t begin, size_t end) {
         const char* in = data + begin * stride;
+        std::vector<double> room;
         for (size_t i = 0; i < plan.columns.size(); ++i) {
             const Property& property = plan.element->properties[i];
             const ScalarType type = property.type;
@@ -335,7 +341,7 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
             const ValueBlock block{in, stride, end - begin, 1, column.stride, column.scale, column.shift};
             copy_scalars(block, type, swap, column, (first + begin) * column.stride);
             ColumnCounts counts;
-            count_block(block, type, swap, column, counts);
+            count_block(block, type, swap, column, counts, room);
             add_counts(counts, property, column, misfits);
             in += size_of(type);
         }

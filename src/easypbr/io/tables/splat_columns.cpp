@@ -20,14 +20,14 @@ constexpr size_t splat_rows_grain = 1 << 14;
 /// Numbers of f_rest fields for degree 0 to 3.
 constexpr std::array<size_t, 4> rest_counts{0, 9, 24, 45};
 
-const VertexField* find(const std::vector<VertexField>& fields, const std::string& name) {
+const VertexField* find(const std::vector<VertexField>& fields, std::string_view name) {
     const auto found =
         std::ranges::find_if(fields, [&](const VertexField& field) { return field.property.name == name; });
     return found == fields.end() ? nullptr : &*found;
 }
 
 const VertexField& require(const Source& source, const std::vector<VertexField>& fields,
-                           const std::string& name) {
+                           std::string_view name) {
     if (const VertexField* field = find(fields, name)) return *field;
     fail(source, fmt::format("splats have the properties f_dc_0 to 2, opacity, scale_0 to 2 and rot_0 to 3; "
                              "'{}' is missing",
@@ -59,24 +59,26 @@ Eigen::Index harmonic_column(size_t k, size_t channel) {
 }
 
 SplatColumns::SplatColumns(const Source& source, const std::vector<VertexField>& fields, size_t count) {
-    if (count == 0 || !find(fields, "f_dc_0") || !(find(fields, "scale_0") || find(fields, "rot_0"))) return;
+    if (count == 0 || !find(fields, splat_color_names[0]) ||
+        !(find(fields, splat_scale_names[0]) || find(fields, splat_rotation_names[0])))
+        return;
     const size_t rest = count_rest(source, fields), rows = rest / 3;
-    is_flat_ = !find(fields, "scale_2");
+    is_flat_ = !find(fields, splat_scale_names[2]);
     charge_memory(uint64_t(count) * (11 + rest) * sizeof(float), "its splats");
     scales_.setZero(Eigen::Index(count), 3);
     rotations_.resize(Eigen::Index(count), 4);
     opacities_.resize(Eigen::Index(count));
     sh_.resize(Eigen::Index(count), Eigen::Index(3 + rest));
-    const auto set = [&](const std::string& name, auto& matrix, Eigen::Index column) {
+    const auto set = [&](std::string_view name, auto& matrix, Eigen::Index column) {
         set_column(require(source, fields, name), matrix, column);
     };
-    set("opacity", opacities_, 0);
-    for (int i = 0; i < (is_flat_ ? 2 : 3); ++i) set(fmt::format("scale_{}", i), scales_, i);
-    for (int i = 0; i < 4; ++i) set(fmt::format("rot_{}", i), rotations_, i);
-    for (int i = 0; i < 3; ++i) set(fmt::format("f_dc_{}", i), sh_, i);
+    set(splat_opacity_name, opacities_, 0);
+    for (size_t i = 0; i < (is_flat_ ? 2 : 3); ++i) set(splat_scale_names[i], scales_, Eigen::Index(i));
+    for (size_t i = 0; i < 4; ++i) set(splat_rotation_names[i], rotations_, Eigen::Index(i));
+    for (size_t i = 0; i < 3; ++i) set(splat_color_names[i], sh_, Eigen::Index(i));
     for (size_t channel = 0; channel < 3; ++channel)
         for (size_t k = 0; k < rows; ++k)
-            set(fmt::format("f_rest_{}", channel * rows + k), sh_, harmonic_column(k, channel));
+            set(harmonic_name(channel * rows + k), sh_, harmonic_column(k, channel));
 }
 
 SplatArrays SplatColumns::finish(const Source& source) {

@@ -1,11 +1,10 @@
 // Splats as rows of a table, for writing.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "easypbr/io/tables/splat_columns.h"
+#include "easypbr/io/tables/splat_names.h"
 
 namespace easypbr::io {
 namespace {
@@ -27,25 +26,26 @@ std::vector<RowPart> splat_row_parts(const SplatArrays& splats) {
                            }
                        }};
     };
+    const auto names = [](const auto& all) { return Names(all.begin(), all.end()); };
     const auto rows = size_t(splats.sh.cols() / 3 - 1);
     Names rest;
-    for (size_t i = 0; i < 3 * rows; ++i) rest.push_back(fmt::format("f_rest_{}", i));
+    for (size_t i = 0; i < 3 * rows; ++i) rest.push_back(harmonic_name(i));
     std::vector<RowPart> parts;
-    parts.push_back(part({"f_dc_0", "f_dc_1", "f_dc_2"},
+    parts.push_back(part(names(splat_color_names),
                          [sh = splats.sh](Eigen::Index row, Eigen::Index i) { return sh(row, i); }));
     if (rows > 0)
         parts.push_back(part(std::move(rest), [sh = splats.sh, rows](Eigen::Index row, Eigen::Index i) {
             return sh(row, harmonic_column(size_t(i) % rows, size_t(i) / rows));
         }));
-    parts.push_back(part({"opacity"}, [o = splats.opacities](Eigen::Index row, Eigen::Index) {
-        const float opacity = std::clamp(o(row), least_opacity, most_opacity);
-        return std::log(opacity / (1 - opacity));
-    }));
     parts.push_back(
-        part({"scale_0", "scale_1", "scale_2"}, [s = splats.scales](Eigen::Index row, Eigen::Index i) {
-            return std::log(std::max(s(row, i), least_scale));
+        part({std::string(splat_opacity_name)}, [o = splats.opacities](Eigen::Index row, Eigen::Index) {
+            const float opacity = std::clamp(o(row), least_opacity, most_opacity);
+            return std::log(opacity / (1 - opacity));
         }));
-    parts.push_back(part({"rot_0", "rot_1", "rot_2", "rot_3"},
+    parts.push_back(part(names(splat_scale_names), [s = splats.scales](Eigen::Index row, Eigen::Index i) {
+        return std::log(std::max(s(row, i), least_scale));
+    }));
+    parts.push_back(part(names(splat_rotation_names),
                          [q = splats.rotations](Eigen::Index row, Eigen::Index i) { return q(row, i); }));
     return parts;
 }

@@ -59,9 +59,14 @@ VideoFile::VideoFile(fs::path name, fs::path path, Descriptor file)
 
 std::optional<VideoFile> VideoFile::create_at(const fs::path& name, const fs::path& path, mode_t mode) {
     Descriptor file{open_file(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, mode)};
-    if (file.get() < 0 && errno == EEXIST) return std::nullopt;
-    if (file.get() < 0)
-        throw FileError(fmt::format("cannot write {}: {}", name.string(), std::strerror(errno)));
+    const int error = file.get() < 0 ? errno : 0;
+    if (error == EEXIST) return std::nullopt;
+    if (error != 0) {
+        // A name that fits may be too long for the file beside it.
+        const bool is_given = path.filename() == name.filename();
+        const std::string part = is_given ? "" : fmt::format("{}: ", path.filename().string());
+        throw FileError(fmt::format("cannot write {}: {}{}", name.string(), part, std::strerror(error)));
+    }
     set_lock(file.get(), F_WRLCK);
     return VideoFile(name, path, std::move(file));
 }

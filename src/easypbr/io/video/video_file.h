@@ -42,6 +42,8 @@ class VideoFile {
 
   private:
     VideoFile(fs::path name, fs::path path, Descriptor file);
+    /// Nothing where a file is there already. Throws FileError, which names the path, too, where it is
+    /// another.
     static std::optional<VideoFile> create_at(const fs::path& name, const fs::path& path, mode_t mode);
     bool is_in_place() const;
     void require_in_place() const;

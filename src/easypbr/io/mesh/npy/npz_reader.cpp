@@ -206,8 +206,13 @@ class NpzReader {
     /// One of a mesh with faces says how it was made, not what it is.
     void read_voxel_size(const NamedArray& array) {
         const float size = values_of<Eigen::VectorXf>(array)[0];
-        if (faces_.rows > 0 || !(size > 0) || !std::isfinite(size)) return leave_out(array);
-        voxel_size_ = size;
+        if (faces_.rows == 0 && size > 0 && std::isfinite(size))
+            voxel_size_ = size;
+        else
+            log_warning(
+                fmt::format("{}: array '{}' is left out: expected a finite number above 0 beside points "
+                            "without faces",
+                            source_.path.string(), array.name));
     }
 
     void check_and_triangulate() {

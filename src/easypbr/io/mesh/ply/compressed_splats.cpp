@@ -170,8 +170,7 @@ class PackedReader {
         if (harmonics_->count() != count)
             fail(source_, fmt::format("packed splats: {} rows of spherical harmonics for {} splats",
                                       harmonics_->count(), count));
-        while (const auto column =
-                   harmonics_->find(fmt::format("f_rest_{}", rest_.size()), ScalarType::uint8))
+        while (const auto column = harmonics_->find(harmonic_name(rest_.size()), ScalarType::uint8))
             rest_.push_back(*column);
         constexpr std::array<size_t, 4> counts{0, 9, 24, 45};
         const auto found = std::ranges::find(counts, rest_.size());
