@@ -133,6 +133,7 @@ TEST(GltfModes, AnimationsReachTheChildren) {
     EXPECT_EQ(mesh.V.col(2).minCoeff(), 1);
     EXPECT_EQ(child(mesh, 0).V.col(2).minCoeff(), 1);
     EXPECT_EQ(color(child(mesh, 0)), Vec3(0.5f, 0, 1));
+    EXPECT_TRUE(child(mesh, 0).materials.at(0).base_color_given);  // should it pass the default one
     EXPECT_EQ(color(mesh), red);
 }
 

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "easypbr/render/primitives/caches.h"
+#include "easypbr/render/shadow/caster_bounds.h"
 #include "shadow_test.h"
 
 namespace easypbr::render::useful_casters_test {
@@ -21,29 +23,32 @@ TEST(ConvexFaces, OfAFlatMeshAreBothItsSides) {
     EXPECT_EQ(planes_of(make_plane(2, 40)).size(), 2u);  // of 3200 faces
 }
 
-TEST(ConvexFaces, OfABoxAreSixInAnyWinding) {
-    Mesh box = make_box(Vec3(2, 4, 6));
+TEST(ConvexFaces, OfASlabAreSixInAnyWinding) {
+    Mesh box = make_box(Vec3(0.4f, 4, 6));
     for (const bool inward : {false, true}) {
         if (inward) box.set_F(Array3i(Array3i::Dense(Array3i::Dense(box.F()).rowwise().reverse())));
         const auto planes = planes_of(box);
         ASSERT_EQ(planes.size(), 6u) << inward;
         for (const FacePlane& plane : planes) {
-            const Vec3d half(1, 2, 3);
+            const Vec3d half(0.2, 2, 3);
             EXPECT_NEAR(plane.offset, plane.normal.cwiseAbs().dot(half), 1e-6) << inward;
         }
     }
 }
 
-// What is open, hollow or made of many faces may hide light from itself.
+// What is open, hollow or made of many faces may hide light from itself, and what is thick may be a room.
 TEST(ConvexFaces, OthersHaveNone) {
-    Mesh open = make_box();
+    const Vec3 slab(4, 4, 0.4f);
+    EXPECT_EQ(planes_of(make_box(slab)).size(), 6u);
+    EXPECT_TRUE(planes_of(make_box()).empty());
+    Mesh open = make_box(slab);
     open.set_F(Array3i(Array3i::Dense(Array3i::Dense(open.F()).topRows(10))));
     EXPECT_TRUE(planes_of(open).empty());
     EXPECT_TRUE(planes_of(make_sphere(1, 32)).empty());
-    Array3f::Dense V = make_box().V();
+    Array3f::Dense V = make_box(slab).V();
     for (Eigen::Index i = 0; i < V.rows(); ++i)
-        if (V(i, 0) > 0 && V(i, 1) > 0 && V(i, 2) > 0) V.row(i).setConstant(-0.2f);  // a dent
-    EXPECT_TRUE(planes_of(Mesh(Array3f(V), make_box().F())).empty());
+        if (V(i, 0) > 0 && V(i, 1) > 0 && V(i, 2) > 0) V.row(i).setConstant(-0.1f);  // a dent
+    EXPECT_TRUE(planes_of(Mesh(Array3f(V), make_box(slab).F())).empty());
     EXPECT_TRUE(convex_faces(Array3f(), Array3i()).empty());
 }
 
@@ -61,15 +66,9 @@ CasterExtent ball_at(const Vec3d& centre, double radius) {
     return {Box3d(centre - half, centre + half), 0, {}};
 }
 
-Box3d bounds_of(const std::vector<CasterExtent>& casters) {
-    Box3d all;
-    for (const CasterExtent& caster : casters) all.extend(caster.box);
-    return all;
-}
-
 size_t left_out(const std::vector<CasterExtent>& casters, const ResolvedLight& light,
                 const std::optional<FacePlane>& ground = std::nullopt) {
-    return useful_casters(light, casters, bounds_of(casters), 0, ground).left_out.size();
+    return useful_casters(light, CasterSet(casters), 0, ground).left_out.size();
 }
 
 ResolvedLight sun_along(const Vec3& direction) {
@@ -85,7 +84,7 @@ const CasterExtent floor_of_20 = extent_of(facing_square(10));
 TEST(UsefulCasters, LeaveOutAFloor) {
     const std::vector<CasterExtent> casters{floor_of_20, ball_at(Vec3d(1, 0, 1), 1)};
     const UsefulCasters useful =
-        useful_casters(sun_along(Vec3(1, 0, -1)), casters, bounds_of(casters), 0, std::nullopt);
+        useful_casters(sun_along(Vec3(1, 0, -1)), CasterSet(casters), 0, std::nullopt);
     EXPECT_EQ(useful.left_out, std::vector<size_t>{0});
     EXPECT_EQ(useful.bounds.min(), Vec3d(0, -1, 0));
     EXPECT_EQ(useful.bounds.max(), Vec3d(2, 1, 2));
@@ -95,7 +94,7 @@ TEST(UsefulCasters, LeaveOutAFloor) {
 TEST(UsefulCasters, HaveRoomForPenumbrae) {
     const std::vector<CasterExtent> casters{floor_of_20, ball_at(Vec3d(1, 0, 1), 1)};
     const UsefulCasters useful =
-        useful_casters(sun_along(Vec3(0, 0, -1)), casters, bounds_of(casters), 0.6, std::nullopt);
+        useful_casters(sun_along(Vec3(0, 0, -1)), CasterSet(casters), 0.6, std::nullopt);
     // 0.6 / 0.15 is 4 of width, as far as there is anything.
     EXPECT_EQ(useful.bounds.min(), Vec3d(-1, -2, 0));
     EXPECT_EQ(useful.bounds.max(), Vec3d(3, 2, 2));
@@ -125,6 +124,27 @@ TEST(UsefulCasters, KeepAFloorAboveSomething) {
     EXPECT_EQ(left_out({floor_of_20, ball}, sun, FacePlane{Vec3d(1, 0, 0), 0}), 0u);
 }
 
+// A sheet just below it that is seen beyond its edge, small as it is.
+TEST(UsefulCasters, KeepAFloorAboveASheet) {
+    const CasterExtent sheet{Box3d(Vec3d(6, -4, -0.1), Vec3d(14, 4, -0.1)), 0, {}};
+    EXPECT_EQ(left_out({floor_of_20, ball_at(Vec3d(1, 0, 1), 1), sheet}, sun_along(Vec3(1, 0, -1))), 0u);
+}
+
+// A small card above the ground is no floor, however large the rest is.
+TEST(UsefulCasters, KeepACardAboveTheGround) {
+    const CasterExtent card = extent_of(facing_square(0.25f));
+    const CasterExtent mountain{Box3d(Vec3d(10, -500, 0), Vec3d(1000, 500, 100)), 0, {}};
+    EXPECT_EQ(left_out({card, mountain}, sun_along(Vec3(1, 0, -1)), FacePlane{Vec3d(0, 0, 1), -0.1}), 0u);
+}
+
+// Balls that are drawn around points reach below the floor as those of meshes do.
+TEST(UsefulCasters, KeepAFloorWithinLargePoints) {
+    const CasterExtent point{Box3d(Vec3d::Zero(), Vec3d::Zero()), 1, {}};
+    EXPECT_EQ(left_out({floor_of_20, point}, sun_along(Vec3(1, 0, -1))), 0u);
+    const CasterExtent small{Box3d(Vec3d(-3, -3, 0), Vec3d(3, 3, 3)), 0.01, {}};
+    EXPECT_EQ(left_out({floor_of_20, small}, sun_along(Vec3(1, 0, -1))), 1u);
+}
+
 // What stands on a floor is seldom placed to the last digit; a half of it below is another matter.
 TEST(UsefulCasters, MaySinkIn) {
     const ResolvedLight sun = sun_along(Vec3(1, 0, -1));
@@ -147,10 +167,7 @@ TEST(UsefulCasters, LeaveOutWallsAroundALamp) {
             casters.push_back(extent);
         }
     EXPECT_EQ(left_out(casters, lamp_at(Vec3(1, 2, 3))), 6u);
-    EXPECT_LT(left_out(casters, sun_along(Vec3(1, 2, -3))), 6u);
-    const UsefulCasters in_the_sun =
-        useful_casters(sun_along(Vec3(1, 2, -3)), casters, bounds_of(casters), 0, std::nullopt);
-    EXPECT_TRUE(in_the_sun.left_out.empty());
+    EXPECT_EQ(left_out(casters, sun_along(Vec3(1, 2, -3))), 0u);
 }
 
 // A sheet 0.1 above a floor that is 4000 times as wide as its shadow keeps it: of the light along (1, 0, -1)
@@ -174,6 +191,54 @@ TEST(UsefulCasters, FloorsTakeNoTexels) {
         EXPECT_LT(image.at<float>(29, 16)[0], 0.01) << native;
         EXPECT_GT(image.at<float>(2, 16)[0], 0.1) << native;
     }
+}
+
+// Lights of one direction need different maps where their penumbrae differ.
+TEST(UsefulCasters, LightsOfOneDirectionKeepTheirMaps) {
+    Mesh sheet = facing_square(0.25f);
+    sheet.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 0.1)));
+    const auto picture = [&](bool hard, bool soft) {
+        Scene scene;
+        scene.show(facing_square(4), "floor");
+        scene.show(sheet, "sheet");
+        if (hard) scene.set_light("hard", directional(Vec3(1, 0, -1), 0));
+        if (soft) scene.set_light("soft", directional(Vec3(1, 0, -1), 5));
+        app::Session session = plain_session(scene, 32);
+        session.settings().shadows.enabled = true;
+        look_from(session, Vec3d(0, 0, 4), 10);
+        return render_linear(session);
+    };
+    const Image both = picture(true, true), hard = picture(true, false), soft = picture(false, true);
+    for (size_t i = 0; i < both.pixels<float>().size(); ++i)
+        if (i % 4 < 3) {
+            EXPECT_NEAR(both.pixels<float>()[i], hard.pixels<float>()[i] + soft.pixels<float>()[i], 1e-3f);
+        }
+}
+
+// A crate of slats shows what its lid does to its bottom; closed, it shows nothing.
+TEST(CasterBounds, WhatIsSeenIntoHasNoPlanes) {
+    const auto planes = [](AlphaMode mode) {
+        Mesh slab = make_box(Vec3(4, 4, 0.4f));
+        Material material;
+        material.opacity = 0.5f;
+        material.alpha_mode = mode;
+        slab.set_material(material);
+        Scene scene;
+        scene.show(slab, "slab");
+        const SceneSnapshot snapshot = scene.snapshot();
+        DrawItem item;
+        item.object = &snapshot.objects[0];
+        item.alpha = mode;
+        DrawList list;
+        list.items[DrawMode::mesh].push_back(item);
+        DataCaches caches;
+        const Primitives primitives = make_primitives(caches);
+        CasterBounds bounds;
+        return bounds.of(list, primitives).extents.at(0).planes.size();
+    };
+    EXPECT_EQ(planes(AlphaMode::opaque), 6u);
+    EXPECT_EQ(planes(AlphaMode::blend), 0u);
+    EXPECT_EQ(planes(AlphaMode::mask), 0u);
 }
 
 }  // namespace

@@ -297,6 +297,19 @@ TEST(ElementColors, HeightsDoNotDependOnTheOrigin) {
         EXPECT_EQ(std::get<0>(of(origin, style)), 2499) << origin;
         EXPECT_EQ(std::get<2>(of(origin, style)), std::get<2>(of(0, style))) << origin;
     }
+    // Ends that round to one beside the origin still are two.
+    for (const double origin : {0.0, 5.0}) {
+        const MeshData low = strip();
+        Style narrow = by(ColorBy::height);
+        narrow.color_min = -1e-9f;
+        narrow.color_max = 1e-9f;
+        Eigen::Affine3d T = Eigen::Affine3d::Identity();
+        T.translation().y() = -1.5 - origin;
+        const ColorPlan p = plan_colors(low, narrow, DrawMode::points, T, up, Vec3d(0, origin, 0));
+        const ValueRange range = plan_range(plan_values(low, p), p);
+        EXPECT_LT(range.min, range.max) << origin;
+        EXPECT_LT(range.max - range.min, 1e-6f) << origin;
+    }
     // The 0 of a diverging map is a true one: 2500 to 2503 and -2 to 1 are the vertices' heights.
     style = by(ColorBy::height);
     style.colormap = Colormap::coolwarm;

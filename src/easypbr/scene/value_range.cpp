@@ -79,7 +79,9 @@ void widen(ValueRange& range) {
         return;
     }
     if (range.max - range.min >= smallest_span) return;
-    const auto half = float(std::max(0.5, std::abs(range.true_min()) * 1e-3));
+    // The ends stay apart as floats, beside the true value and beside the base.
+    const auto half =
+        float(std::max({0.5, std::abs(range.true_min()) * 1e-3, std::abs(double(range.min)) * 2e-7}));
     range.min -= half;
     range.max += half;
 }
@@ -133,9 +135,12 @@ ValueRange value_range(const Array1f& values, std::optional<float> min, std::opt
     if (min && max && *min > *max)
         throw ArgumentError(
             fmt::format("style: expected color_min not above color_max, got {} and {}", *min, *max));
-    // One end beyond all values: they all have the colour of the other end.
+    // One end beyond all values is the middle of a range.
     if (min && !max) range.max = std::max(range.max, range.min);
     if (max && !min) range.min = std::min(range.min, range.max);
+    // Given ends that round to one, beside the base, meet in the steepest range.
+    if (min && max && *min < *max && !(range.min < range.max))
+        range.max = std::nextafter(range.min, std::numeric_limits<float>::infinity());
     widen(range);
     return range;
 }

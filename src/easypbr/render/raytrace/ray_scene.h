@@ -109,7 +109,7 @@ class RayScene {
     /// How far the element of a lit surface reaches around its vertex, so that rays that leave it start
     /// beyond its neighbours, which overlap it; 0 of faces and of the ground.
     float reach(const SurfacePlace& on) const;
-    /// The same of what a ray has met, and what a ray of its length ends beside the surface by.
+    /// The same of what a ray has met, and what its position is off by besides after a ray longer than 2.
     float reach(const RayHit& hit) const {
         return reach(hit.on()) + std::max(0.0f, rounding(hit.distance) - rounding(2));
     }
@@ -160,8 +160,8 @@ class RayScene {
         Vec3 position;
         Vec3 face;    ///< normal of the element itself: the interpolated one lies above it or below
         Vec3 normal;  ///< the interpolated one, but for a surface that stands before the place
-        /// Of the element; where none is found, of the nearest one along the view, and what the place may be
-        /// off by at least.
+        /// Of the element; where none is found, of the nearest one along the view, but no less than
+        /// Place::rounding().
         float reach = 0;
         SurfacePlace on;  ///< -1 where the normal is not interpolated
     };

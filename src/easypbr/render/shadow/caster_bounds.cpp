@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace easypbr::render {
 namespace {
@@ -70,35 +71,43 @@ CasterExtent CasterBounds::extent_of(const DrawItem& item, DrawMode kind, double
     return extent;
 }
 
-Box3d CasterBounds::of(const DrawList& casters, const Primitives& primitives) {
+const CasterSet& CasterBounds::of(const DrawList& casters, const Primitives& primitives) {
     std::vector<Caster> now;
     objects_.clear();
     for_each_caster(casters, primitives, [&](const DrawItem& item, DrawMode kind, double reach) {
         const MeshData& mesh = *mesh_of(item);
         now.push_back(
-            {mesh.V.revision(), mesh.F.revision(), kind, reach, item.object->T_world_mesh.matrix()});
+            {mesh.V.revision(), mesh.F.revision(), kind, reach, item.object->T_world_mesh.matrix(), false});
         objects_.push_back(item.object);
     });
-    if (now == casters_ && extents_.size() == now.size()) return bounds_;
-    Box3d bounds;
+    note_what_is_seen_into(casters, now);
+    if (now == casters_) return set_;
     casters_.clear();  // until all is there: it can be interrupted
-    extents_.clear();
+    set_ = {};
+    std::vector<CasterExtent> extents;
     for_each_caster(casters, primitives, [&](const DrawItem& item, DrawMode kind, double reach) {
-        const Box3d& box = extents_.emplace_back(extent_of(item, kind, reach)).box;
-        if (box.isEmpty()) return;
-        const Vec3d margin = Vec3d::Constant(reach);
-        bounds.extend(Box3d(box.min() - margin, box.max() + margin));
+        const bool may_be_left_out = !now[extents.size()].seen_into;
+        extents.push_back(extent_of(item, kind, reach));
+        if (!may_be_left_out) extents.back().planes.clear();
     });
     unused_.evict_unused();
     meshes_.evict_unused();
     planes_.evict_unused();
-    // What an object draws besides its faces would be left out with them.
+    set_ = CasterSet(std::move(extents));
+    casters_ = std::move(now);
+    return set_;
+}
+
+void CasterBounds::note_what_is_seen_into(const DrawList& casters, std::vector<Caster>& noted) const {
     std::map<const SceneSnapshot::Object*, int> counts;
     for (const auto* object : objects_) ++counts[object];
-    for (size_t i = 0; i < extents_.size(); ++i)
-        if (counts[objects_[i]] > 1) extents_[i].planes.clear();
-    casters_ = std::move(now);
-    return bounds_ = bounds;
+    // What an object draws besides its faces would be left out with them.
+    std::set<const SceneSnapshot::Object*> seen_into;
+    for (const auto& [object, count] : counts)
+        if (count > 1) seen_into.insert(object);
+    for (const DrawItem& item : casters.of(DrawMode::mesh))
+        if (item.alpha != AlphaMode::opaque || item.casts_tint()) seen_into.insert(item.object);
+    for (size_t i = 0; i < noted.size(); ++i) noted[i].seen_into = seen_into.contains(objects_[i]);
 }
 
 }  // namespace easypbr::render

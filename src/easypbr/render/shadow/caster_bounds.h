@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,10 +18,10 @@ class CasterBounds {
   public:
     /// Of the items of a list in world space, with what reaches beyond their vertices; of meshes by the
     /// vertices that faces have. Empty when there are none.
-    Box3d of(const DrawList& casters, const Primitives& primitives);
+    const CasterSet& of(const DrawList& casters, const Primitives& primitives);
 
-    /// The casters of the last list, and of which objects they are: these live as long as it.
-    std::span<const CasterExtent> extents() const { return extents_; }
+    /// The same of the last list, and of which objects they are: these live as long as it.
+    const CasterSet& last() const { return set_; }
     const SceneSnapshot::Object* object(size_t caster) const { return objects_[caster]; }
 
   private:
@@ -32,18 +31,21 @@ class CasterBounds {
         DrawMode kind;
         double reach;
         Eigen::Matrix4d pose;
+        /// Some part of it is not opaque, so that what it hides light from within is seen; or it is drawn in
+        /// several ways.
+        bool seen_into;
 
         bool operator==(const Caster&) const = default;
     };
 
     /// What is drawn of an item; of a mesh without the vertices that no face has.
     std::shared_ptr<const MeshData> used(const DrawItem& item, DrawMode kind);
+    void note_what_is_seen_into(const DrawList& casters, std::vector<Caster>& noted) const;
     CasterExtent extent_of(const DrawItem& item, DrawMode kind, double reach);
 
     using Vertices = std::vector<Eigen::Index>;
     std::vector<Caster> casters_;
-    Box3d bounds_;  ///< of these
-    std::vector<CasterExtent> extents_;
+    CasterSet set_;  ///< of these
     std::vector<const SceneSnapshot::Object*> objects_;
     RevisionCache<std::pair<uint64_t, uint64_t>, std::vector<FacePlane>>
         planes_;  ///< of meshes, in their frames

@@ -10,6 +10,8 @@ namespace {
 
 /// More planes than that take longer than they are worth.
 constexpr Eigen::Index most_convex_faces = 64;
+/// How thick slabs are at most, in diagonals of the mesh: what is thicker may be a room.
+constexpr double thickest = 0.1;
 /// Places are in a plane that are nearer to it than that, in diagonals of the mesh.
 constexpr double flat = 1e-6;
 
@@ -64,6 +66,15 @@ std::vector<FacePlane> convex_faces(const Array3f& V, const Array3i& F) {
         };
         if (std::ranges::none_of(planes, is_same)) planes.push_back(*plane);
     }
+    const auto thickness = [&](const FacePlane& plane) {
+        double lowest = plane.offset;
+        for (Eigen::Index i = 0; i < V.rows(); ++i) lowest = std::min(lowest, plane.normal.dot(vertex(V, i)));
+        return plane.offset - lowest;
+    };
+    const auto is_thin = [&](const FacePlane& plane) {
+        return thickness(plane) <= thickest * box.diagonal().norm();
+    };
+    if (std::ranges::none_of(planes, is_thin)) return {};
     const gpu::Winding winding = gpu::winding_of(V, F);
     const bool is_closed = winding == gpu::Winding::outward || winding == gpu::Winding::inward;
     return is_closed ? planes : std::vector<FacePlane>{};

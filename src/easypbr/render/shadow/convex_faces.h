@@ -14,8 +14,9 @@ struct FacePlane {
     double offset;
 };
 
-/// The planes of a closed convex mesh of 4 to 64 faces, which lies below all of them, or both sides of the
-/// plane in which all faces of a mesh lie; none of other meshes. Vertices that no face has count.
+/// Both sides of the plane in which all faces of a mesh lie; or the planes of a slab, which lies below all of
+/// them: a closed convex mesh of at most 64 faces, at most 1/10 of its diagonal thick. None of other meshes.
+/// Vertices that no face has count.
 std::vector<FacePlane> convex_faces(const Array3f& V, const Array3i& F);
 
 }  // namespace easypbr::render

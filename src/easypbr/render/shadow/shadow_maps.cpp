@@ -36,16 +36,17 @@ constexpr double slack = 0.01;
 /// casters. Of the powers of two, so that maps stay while a light grows.
 double widest_penumbra(const ResolvedLight& light, double extent, const Box3d& all) {
     const double diagonal = all.isEmpty() ? 0 : all.diagonal().norm();
+    if (!(extent > 0)) return 0;
     double part = extent;
     if (light.type != LightType::directional) {
         const double nearest = all.isEmpty() ? 0 : std::sqrt(all.squaredExteriorDistance(light.position));
         part = extent < nearest ? extent / nearest : 1;
     }
-    return part > 0 ? diagonal * std::exp2(std::ceil(std::log2(part))) : 0;
+    return diagonal * std::exp2(std::ceil(std::log2(part)));
 }
 
-std::optional<FacePlane> ground_of(const ResolvedSettings& resolved) {
-    return FacePlane{parse_up(resolved.settings.camera.up), double(resolved.settings.ground.height)};
+FacePlane ground_of(const ResolvedSettings& resolved) {
+    return {parse_up(resolved.settings.camera.up), double(resolved.settings.ground.height)};
 }
 
 /// Whether a light reaches a box at all: beyond its range it is zero.
@@ -123,9 +124,9 @@ ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Fra
     const double extent = settings.mode == ShadowMode::soft ? extent_of(light) : 0;
     const int samples = extent > 0 ? frame.sample_count : 1;
     const ResolvedLight sampled = sampled_light(light, frame.sample_index, samples);
-    request.casters =
-        useful_casters(light, extent_.extents(), bounds_, widest_penumbra(light, extent, bounds_),
-                       receivers == Receivers::on_ground ? ground_of(*frame.resolved) : std::nullopt);
+    const auto ground =
+        receivers == Receivers::on_ground ? std::optional(ground_of(*frame.resolved)) : std::nullopt;
+    request.casters = useful_casters(light, extent_.last(), widest_penumbra(light, extent, bounds_), ground);
     const auto projection = project_shadows(sampled, request.casters.bounds, settings.resolution);
     if (!projection) return request;
     request.shadowed = true;
@@ -137,6 +138,9 @@ ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Fra
     const Vec3 direction = light.type == LightType::point ? Vec3(Vec3::Zero()) : sampled.direction;
     request.key = {double(light.type), position.x(),  position.y(),  position.z(),
                    direction.x(),      direction.y(), direction.z(), light.outer_cone_deg};
+    for (const Vec3d& end : {request.casters.bounds.min(), request.casters.bounds.max()})
+        request.key.insert(request.key.end(), end.begin(), end.end());
+    request.key.insert(request.key.end(), request.casters.left_out.begin(), request.casters.left_out.end());
     return request;
 }
 
@@ -166,8 +170,7 @@ void ShadowMaps::keep_in_host_memory(bool host) {
 }
 
 void ShadowMaps::begin(const Frame& frame, const DrawList& casters, Receivers receivers) {
-    const Box3d bounds = extent_.of(casters, primitives_);
-    note_casters(casters, bounds);
+    note_casters(casters, extent_.of(casters, primitives_).bounds);
     list_ = &casters;
     ++frame_;
     requests_.clear();
@@ -238,9 +241,8 @@ const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
     Entry& entry = found->second;
     entry.last_frame = frame_;
     entry.last_block = block_;
-    if (entry.casters != casters_generation_ || !(entry.shown == request.casters)) entry.drawn = 0;
+    if (entry.casters != casters_generation_) entry.drawn = 0;
     entry.casters = casters_generation_;
-    entry.shown = request.casters;
     draw(request, entry);
     return &entry;
 }

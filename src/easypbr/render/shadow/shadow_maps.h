@@ -14,8 +14,8 @@
 namespace easypbr::render {
 
 /// Keeps the maps of all lights in the layers of one texture, by what they show: a map is drawn when its
-/// light or what casts has changed, not when the camera has. Lights beyond its memory are drawn from maps
-/// made anew for every frame.
+/// light, what casts, or the ground has changed, not when the camera has. Lights beyond its memory are drawn
+/// from maps made anew for every frame.
 class ShadowMaps {
   public:
     /// Both must outlive this.
@@ -58,20 +58,20 @@ class ShadowMaps {
     uint64_t drawn() const { return drawn_; }
 
   private:
-    /// All that decides about a light's maps, but what casts.
-    using LightKey = std::array<double, 9>;
+    /// All that decides about a light's maps, but the casters themselves: the light, and which casters the
+    /// maps show.
+    using LightKey = std::vector<double>;
     struct Entry {
         int first_layer = 0, layers = 0;
-        uint64_t casters = 0;      ///< generation of the casters that it shows
-        UsefulCasters shown = {};  ///< of these
-        unsigned drawn = 0;        ///< its maps that are, as bits
-        uint64_t last_frame = 0;   ///< that asked for it
+        uint64_t casters = 0;     ///< generation of the casters that it shows
+        unsigned drawn = 0;       ///< its maps that are, as bits
+        uint64_t last_frame = 0;  ///< that asked for it
         uint64_t last_block = 0;
     };
     struct Request {
         const ResolvedLight* light = nullptr;
         bool shadowed = false;
-        LightKey key{};
+        LightKey key;
         UsefulCasters casters;
         ShadowProjection projection;
         unsigned needed = 0;  ///< maps, as bits

@@ -2,18 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "easypbr/scene/light_falloff.h"
 
 namespace easypbr::render {
 namespace {
 
-/// Larger ones alone decide how large maps are.
+/// Large ones decide how large maps are.
 constexpr size_t most_left_out = 16;
-/// How far others may reach below the plane of what is left out: those of less than half its size, which sink
-/// into it, in their diagonals; and all, in the diagonal of the smaller one.
-constexpr double sunken = 0.01, beside = 1e-3;
-/// How far from the ground a caster may end that lies on it, in diagonals of all casters.
+/// How far others of less than half its size may sink into what is left out, in their diagonals.
+constexpr double sunken = 0.01;
+/// How far others may be below its plane at most, in the diagonal of the smaller one.
+constexpr double beside = 1e-3;
+/// How far from the ground a caster may end that lies on it, in its diagonals.
 constexpr double on_ground = 1e-3;
 /// Maps of more than this part of all casters are not worth it.
 constexpr double least_gain = 0.7;
@@ -21,12 +23,20 @@ constexpr double least_gain = 0.7;
 /// shaders/common_shadow_filter.glsl.
 constexpr double widest_filter = 0.15;
 
-double diagonal(const CasterExtent& caster) {
-    return caster.box.isEmpty() ? 0 : caster.box.diagonal().norm();
+double diagonal_of(const CasterExtent& caster) {
+    const Box3d box = caster.drawn();
+    return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-double lowest(const Box3d& box, const FacePlane& plane) {
-    return plane.normal.dot(box.center()) - plane.normal.cwiseAbs().dot(box.sizes()) / 2 - plane.offset;
+struct Heights {
+    double lowest, highest;
+};
+
+/// Of a box above a plane.
+Heights heights_of(const Box3d& box, const FacePlane& plane) {
+    const double middle = plane.normal.dot(box.center()) - plane.offset,
+                 half = plane.normal.cwiseAbs().dot(box.sizes()) / 2;
+    return {middle - half, middle + half};
 }
 
 /// Whether all of a light lies above a plane.
@@ -43,18 +53,37 @@ bool is_above(const ResolvedLight& light, const FacePlane& plane) {
     return plane.normal.dot(light.position) - plane.offset > around;
 }
 
-bool lies_on(const CasterExtent& caster, const FacePlane& plane, const FacePlane& ground, double size) {
+bool lies_on(const CasterExtent& caster, const FacePlane& plane, const FacePlane& ground) {
     if (plane.normal.dot(ground.normal) < 1 - 1e-6) return false;
-    return std::abs(ground.normal.dot(caster.box.center()) - ground.offset) < on_ground * size &&
-           ground.normal.cwiseAbs().dot(caster.box.sizes()) < on_ground * size;
+    const Heights heights = heights_of(caster.box, ground);
+    const double most = on_ground * diagonal_of(caster);
+    return std::abs(heights.lowest) < most && std::abs(heights.highest) < most;
 }
 
 /// Whether a caster below a plane hides nothing of another one, or too little to be seen.
 bool is_clear_of(const CasterExtent& other, const CasterExtent& caster, const FacePlane& plane) {
-    if (other.box.isEmpty()) return true;
-    const double own = diagonal(caster), others = diagonal(other);
-    const double depth = others < own / 2 ? sunken * others : beside * std::min(own, others);
-    return lowest(other.box, plane) >= -depth;
+    const Box3d box = other.drawn();
+    if (box.isEmpty()) return true;
+    const double own = diagonal_of(caster), others = diagonal_of(other);
+    const auto [lowest, highest] = heights_of(box, plane);
+    const bool sinks = others < own / 2 && highest > -lowest;
+    return lowest >= -(sinks ? sunken * others : beside * std::min(own, others));
+}
+
+bool is_convex(const CasterSet& casters, size_t i) {
+    return std::ranges::binary_search(casters.convex, i);
+}
+
+/// Whether a caster below a plane hides the light above it from no other one.
+bool hides_nothing(const CasterSet& casters, size_t i, const FacePlane& plane) {
+    const auto is_clear = [&](size_t other) {
+        return other == i || is_clear_of(casters.extents[other], casters.extents[i], plane);
+    };
+    if (!std::ranges::all_of(casters.convex, is_clear)) return false;
+    if (casters.others.isEmpty() || heights_of(casters.others, plane).lowest >= 0) return true;
+    for (size_t other = 0; other < casters.extents.size(); ++other)
+        if (!is_convex(casters, other) && !is_clear(other)) return false;
+    return true;
 }
 
 /// The box with room for penumbrae, as far as there are casters.
@@ -65,39 +94,45 @@ Box3d with_room(const Box3d& box, double penumbra, const Box3d& all) {
 
 }  // namespace
 
-UsefulCasters useful_casters(const ResolvedLight& light, std::span<const CasterExtent> casters,
-                             const Box3d& all, double penumbra, const std::optional<FacePlane>& ground) {
-    std::vector<size_t> candidates;
-    for (size_t i = 0; i < casters.size(); ++i)
-        if (!casters[i].planes.empty()) candidates.push_back(i);
-    const auto smaller = [&](size_t i) { return -diagonal(casters[i]); };
-    std::ranges::stable_sort(candidates, {}, smaller);
-    candidates.resize(std::min(candidates.size(), most_left_out));
-    const double size = all.isEmpty() ? 0 : all.diagonal().norm();
-    const auto hides_nothing = [&](size_t i, const FacePlane& plane) {
-        if (!is_above(light, plane)) return false;
-        if (ground && !lies_on(casters[i], plane, *ground, size)) return false;
-        for (size_t other = 0; other < casters.size(); ++other)
-            if (other != i && !is_clear_of(casters[other], casters[i], plane)) return false;
-        return true;
-    };
-    UsefulCasters found{all, {}};
-    for (const size_t i : candidates)
-        if (std::ranges::any_of(casters[i].planes,
-                                [&](const auto& plane) { return hides_nothing(i, plane); }))
-            found.left_out.push_back(i);
-    std::ranges::sort(found.left_out);
-    Box3d rest;
-    for (size_t i = 0; i < casters.size(); ++i) {
-        if (casters[i].box.isEmpty() || std::ranges::binary_search(found.left_out, i)) continue;
-        const Vec3d reach = Vec3d::Constant(casters[i].reach);
-        rest.extend(Box3d(casters[i].box.min() - reach, casters[i].box.max() + reach));
+Box3d CasterExtent::drawn() const {
+    if (box.isEmpty()) return box;
+    const Vec3d margin = Vec3d::Constant(reach);
+    return Box3d(box.min() - margin, box.max() + margin);
+}
+
+CasterSet::CasterSet(std::vector<CasterExtent> casters) : extents(std::move(casters)) {
+    std::vector<std::pair<double, size_t>> sizes;
+    for (size_t i = 0; i < extents.size(); ++i) {
+        bounds.extend(extents[i].drawn());
+        if (!extents[i].planes.empty()) sizes.emplace_back(-diagonal_of(extents[i]), i);
     }
-    if (found.left_out.empty() || rest.isEmpty() || !(rest.diagonal().norm() > 0)) return {all, {}};
-    rest = with_room(rest, penumbra, all);
-    if (!(rest.diagonal().norm() < least_gain * size)) return {all, {}};
-    found.bounds = rest;
-    return found;
+    const auto end = sizes.begin() + std::ptrdiff_t(std::min(sizes.size(), most_left_out));
+    std::partial_sort(sizes.begin(), end, sizes.end());
+    for (auto it = sizes.begin(); it != end; ++it) convex.push_back(it->second);
+    std::ranges::sort(convex);
+    for (size_t i = 0; i < extents.size(); ++i)
+        if (!std::ranges::binary_search(convex, i)) others.extend(extents[i].drawn());
+}
+
+UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& casters, double penumbra,
+                             const std::optional<FacePlane>& ground) {
+    UsefulCasters found;
+    Box3d rest = casters.others;
+    for (const size_t i : casters.convex) {
+        const CasterExtent& caster = casters.extents[i];
+        const auto is_useless = [&](const FacePlane& plane) {
+            return is_above(light, plane) && (!ground || lies_on(caster, plane, *ground)) &&
+                   hides_nothing(casters, i, plane);
+        };
+        if (std::ranges::any_of(caster.planes, is_useless))
+            found.left_out.push_back(i);
+        else
+            rest.extend(caster.drawn());
+    }
+    const UsefulCasters all{casters.bounds, {}};
+    if (found.left_out.empty() || rest.isEmpty() || !(rest.diagonal().norm() > 0)) return all;
+    found.bounds = with_room(rest, penumbra, casters.bounds);
+    return found.bounds.diagonal().norm() < least_gain * casters.bounds.diagonal().norm() ? found : all;
 }
 
 }  // namespace easypbr::render

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "easypbr/render/shadow/convex_faces.h"
@@ -14,26 +13,35 @@ namespace easypbr::render {
 struct CasterExtent {
     Box3d box;                      ///< world; of its vertices
     double reach = 0;               ///< of what it draws beyond them
-    std::vector<FacePlane> planes;  ///< world: convex_faces()
+    std::vector<FacePlane> planes;  ///< world: convex_faces(); none of what can be seen into
+
+    /// With what it draws beyond its vertices; empty where these are none.
+    Box3d drawn() const;
+};
+
+/// All casters of a scene.
+struct CasterSet {
+    CasterSet() = default;
+    explicit CasterSet(std::vector<CasterExtent> casters);
+
+    std::vector<CasterExtent> extents;
+    std::vector<size_t> convex;  ///< the largest of those with planes, by their indices, in rising order
+    Box3d others;                ///< bounds of the casters that are not in `convex`
+    Box3d bounds;                ///< of all
 };
 
 /// Casters for the maps of a light.
 struct UsefulCasters {
     Box3d bounds;                  ///< what the maps have to show
     std::vector<size_t> left_out;  ///< casters, by their indices, in rising order
-
-    bool operator==(const UsefulCasters& other) const {
-        return bounds.min() == other.bounds.min() && bounds.max() == other.bounds.max() &&
-               left_out == other.left_out;
-    }
 };
 
 /// Leaves out flat and convex casters with a face above which are the light and all others: they hide the
-/// light from nothing, and maps of what stands on them are finer. Small others may sink in by 1/100 of their
-/// size. `all`: the bounds of all casters. `penumbra`: the radius of the light's widest penumbrae within
-/// `all`, world units, which the maps have room for. `ground`: the plane that receives shadows besides, which
-/// casters that are left out lie on.
-UsefulCasters useful_casters(const ResolvedLight& light, std::span<const CasterExtent> casters,
-                             const Box3d& all, double penumbra, const std::optional<FacePlane>& ground);
+/// light from nothing, and maps of what stands on them are finer. Others of less than half their size may
+/// sink in by 1/100 of their own, and any may be lower by 1/1000 of the size of the smaller one. `penumbra`:
+/// the radius of the light's widest penumbrae, world units, which the maps have room for. `ground`: the plane
+/// that receives shadows besides, which casters that are left out lie on.
+UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& casters, double penumbra,
+                             const std::optional<FacePlane>& ground);
 
 }  // namespace easypbr::render

@@ -93,7 +93,11 @@ std::optional<GltfMaterialPointers::Place> GltfMaterialPointers::number_or_color
     if (property != "pbrMetallicRoughness/baseColorFactor") return {};
     Group group{std::string(property), three_of(material.base_color), {}};
     group.at_rest.push_back(double(material.opacity));
-    group.put = [](const double* v, Material& m) { m.base_color = vec3_at(v), m.opacity = float(v[3]); };
+    group.put = [](const double* v, Material& m) {
+        m.base_color = vec3_at(v);
+        m.base_color_given = true;
+        m.opacity = float(v[3]);
+    };
     return Place{std::move(group), 0, 4};
 }
 
