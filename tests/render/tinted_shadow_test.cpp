@@ -117,7 +117,9 @@ TEST(TintedShadow, OfPoints) {
         for (const bool by_color : {false, true})
             for (const int widths : {1, 2}) {
                 app::Session session = under({wall_of_points(0.4f, by_color, widths)}, mode, sun);
-                session.settings().shadows.resolution = 128;  // the narrow squares have one to four texels
+                // The map shows all of the floor: the narrow squares have one to four texels.
+                session.scene().show(rectangle(-0.1f, -0.1f, 0.1f, 0.1f, -0.1f), "below");
+                session.settings().shadows.resolution = 128;
                 const Lit lit = lit_floor(session, 1);
                 EXPECT_NEAR(lit.mean.y(), std::pow(0.6, widths * widths), 0.01)
                     << int(mode) << " " << by_color << " " << widths;

@@ -61,7 +61,7 @@ double distance_to(const Box3d& box, const Vec3d& point) {
     return std::sqrt(box.squaredExteriorDistance(point));
 }
 
-ShadowProjection parallel(const ResolvedLight& light, const Box3d& casters, int resolution) {
+ShadowProjection parallel(const ResolvedLight& light, const Box3d& casters, int resolution, double behind) {
     ShadowProjection projection;
     ShadowView& view = projection.views[0];
     view.perspective = false;
@@ -76,7 +76,7 @@ ShadowProjection parallel(const ResolvedLight& light, const Box3d& casters, int 
     // A flat caster seen from its side has no thickness, but depths need a range.
     farthest = std::max(farthest * 1.0009765625, 1.0 / 1024 * casters.diagonal().norm());
     view.near = -farthest;
-    view.far = farthest;
+    view.far = farthest + behind;
     set_window(view, window, resolution);
     return projection;
 }
@@ -181,9 +181,9 @@ Mat4d ShadowView::clip_from_world() const {
 }
 
 std::optional<ShadowProjection> project_shadows(const ResolvedLight& light, const Box3d& casters,
-                                                int resolution) {
+                                                int resolution, double behind) {
     if (casters.isEmpty() || !(casters.diagonal().norm() > 0)) return std::nullopt;
-    if (light.type == LightType::directional) return parallel(light, casters, resolution);
+    if (light.type == LightType::directional) return parallel(light, casters, resolution, behind);
     if (auto single = perspective(light, casters, resolution)) return single;
     return cube(light.position, casters);
 }

@@ -37,11 +37,12 @@ struct ShadowProjection {
 /// Slopes a cube's face reaches beyond its edges, so that filters near them find what they need.
 inline constexpr double cube_slope = 1.1;
 
-/// Fits maps of `resolution` texels to the casters' bounds: a parallel view for directional lights, one
-/// perspective view for spots and for lights that see all casters within 60 degrees of one direction, a cube
-/// for others. Nothing when the bounds are empty or have no extent.
+/// Fits maps of `resolution` texels to the casters' bounds, beyond which they may be pushed away from the
+/// light by `behind`, world units: a parallel view for directional lights, one perspective view for spots and
+/// for lights that see all casters within 60 degrees of one direction, a cube for others. Nothing when the
+/// bounds are empty or have no extent.
 std::optional<ShadowProjection> project_shadows(const ResolvedLight& light, const Box3d& casters,
-                                                int resolution);
+                                                int resolution, double behind = 0);
 
 /// The maps that a light at `position` needs for surfaces within a box, as bits: faces of a cube that see any
 /// of it, or the only map.

@@ -16,6 +16,8 @@ namespace easypbr::render {
 
 /// What a map holds where there is no caster: before any depth.
 inline constexpr float no_shadow_depth = -1e30f;
+/// So many of their reaches casters are pushed away from the light at most.
+inline constexpr float most_pushed = 5;
 
 /// Items that cast shadows; the parts of an object follow each other.
 using Casters = std::vector<const DrawItem*>;

@@ -127,7 +127,8 @@ ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Fra
     const auto ground =
         receivers == Receivers::on_ground ? std::optional(ground_of(*frame.resolved)) : std::nullopt;
     request.casters = useful_casters(light, extent_.last(), widest_penumbra(light, extent, bounds_), ground);
-    const auto projection = project_shadows(sampled, request.casters.bounds, settings.resolution);
+    const auto projection = project_shadows(sampled, request.casters.bounds, settings.resolution,
+                                            most_pushed * extent_.last().reach);
     if (!projection) return request;
     request.shadowed = true;
     request.projection = *projection;

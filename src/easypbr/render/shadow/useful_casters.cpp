@@ -104,6 +104,7 @@ CasterSet::CasterSet(std::vector<CasterExtent> casters) : extents(std::move(cast
     std::vector<std::pair<double, size_t>> sizes;
     for (size_t i = 0; i < extents.size(); ++i) {
         bounds.extend(extents[i].drawn());
+        reach = std::max(reach, extents[i].reach);
         if (!extents[i].planes.empty()) sizes.emplace_back(-diagonal_of(extents[i]), i);
     }
     const auto end = sizes.begin() + std::ptrdiff_t(std::min(sizes.size(), most_left_out));

@@ -28,6 +28,7 @@ struct CasterSet {
     std::vector<size_t> convex;  ///< the largest of those with planes, by their indices, in rising order
     Box3d others;                ///< bounds of the casters that are not in `convex`
     Box3d bounds;                ///< of all
+    double reach = 0;            ///< the largest
 };
 
 /// Casters for the maps of a light.

@@ -12,9 +12,10 @@ namespace easypbr::render {
 namespace {
 
 /// Steepest surface, as a tangent, whose points are pushed behind it.
-constexpr float steepest = 4;
+constexpr float steepest = most_pushed - 1;
 /// Radii that a lit point's disc is pushed further: pixels of a splat lie beside their surface.
 constexpr float push = 1;
+static_assert(steepest + push == most_pushed);
 
 bool is_pushed(const DrawItem& item) {
     return item.kind == SurfaceKind::lit && !item.mesh().N.empty();
