@@ -1,4 +1,4 @@
-"""Files that other programs wrote: each is drawn without a word and fills the frame."""
+"""Files that other programs wrote: each is drawn and fills the frame, without a word but for what is left out."""
 import os
 import pathlib
 
@@ -13,6 +13,9 @@ pytestmark = pytest.mark.skipif(not DATA, reason="left out: EASYPBR_TEST_DATA is
 SILENT = ["head.obj", "nefertiti.obj", "spot.obj", "bunny.ply", "room_scene.obj", "misc/brain.ply",
           "misc/matteonormb.ply", "misc/rangemap.ply", "misc/knot_max_simplified.STL", "Duck/Duck.gltf",
           "DamagedHelmet/DamagedHelmet.gltf"]
+# MeshLab gives the same names to values of vertices and of faces.
+SAID = {"misc/rangemap.ply": ["the scalars 'flags' of the faces are left out",
+                              "the scalars 'quality' of the faces are left out"]}
 # This terrain ends in corners so sharp that their last pixels have no centre inside.
 SHARP = ["misc/matteonormb.ply"]
 
@@ -27,7 +30,9 @@ def covered(easypbr, tmp_path, *arguments):
 @pytest.mark.parametrize("name", SILENT)
 def test_object_fills_the_frame(easypbr, tmp_path, name):
     pixels, said = covered(easypbr, tmp_path, pathlib.Path(DATA or "") / name)
-    assert said == ""
+    warnings = said.splitlines()
+    assert len(warnings) == len(SAID.get(name, []))
+    assert all(warning in line for warning, line in zip(SAID.get(name, []), warnings))
     rows, columns = np.nonzero(pixels[:, :, 3])
     extent = max(np.ptp(rows), np.ptp(columns)) + 1
     # The margin of 0.05 leaves 190 of 200 pixels; each of the two edges is within 1 pixel.
