@@ -1,8 +1,6 @@
 #include "easypbr/render/shadow/caster_bounds.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
 
 namespace easypbr::render {
 namespace {
@@ -99,15 +97,17 @@ const CasterSet& CasterBounds::of(const DrawList& casters, const Primitives& pri
 }
 
 void CasterBounds::note_what_is_seen_into(const DrawList& casters, std::vector<Caster>& noted) const {
-    std::map<const SceneSnapshot::Object*, int> counts;
-    for (const auto* object : objects_) ++counts[object];
     // What an object draws besides its faces would be left out with them.
-    std::set<const SceneSnapshot::Object*> seen_into;
-    for (const auto& [object, count] : counts)
-        if (count > 1) seen_into.insert(object);
+    std::vector<const SceneSnapshot::Object*> all = objects_, seen_into;
+    std::ranges::sort(all);
+    for (size_t i = 1; i < all.size(); ++i)
+        if (all[i] == all[i - 1]) seen_into.push_back(all[i]);
     for (const DrawItem& item : casters.of(DrawMode::mesh))
-        if (item.alpha != AlphaMode::opaque || item.casts_tint()) seen_into.insert(item.object);
-    for (size_t i = 0; i < noted.size(); ++i) noted[i].seen_into = seen_into.contains(objects_[i]);
+        if (item.alpha != AlphaMode::opaque || item.casts_tint()) seen_into.push_back(item.object);
+    if (seen_into.empty()) return;
+    std::ranges::sort(seen_into);
+    for (size_t i = 0; i < noted.size(); ++i)
+        noted[i].seen_into = std::ranges::binary_search(seen_into, objects_[i]);
 }
 
 }  // namespace easypbr::render
