@@ -43,7 +43,7 @@ struct Colored {
 
 /// Faces of other vertices: row i is `rows[i]` of the given ones. Vertices that were one stay one for normals
 /// (source_vertex).
-Colored with_vertices(const MeshData& mesh, Array1i rows, Array3i F) {
+Colored with_vertices(const MeshData& mesh, const Array1i& rows, const Array3i& F) {
     const std::span<const int32_t> from(rows.data(), size_t(rows.size()));
     MeshData out = without_arrays(mesh);
     out.V = rows_of(mesh.V, from);
@@ -53,9 +53,9 @@ Colored with_vertices(const MeshData& mesh, Array1i rows, Array3i F) {
     out.parts = mesh.parts;
     out.voxel_size = mesh.voxel_size;
     out.source_face = mesh.source_face;
-    out.F = std::move(F);
+    out.F = F;
     out.source_vertex = mesh.source_vertex.empty() ? rows : rows_of(mesh.source_vertex, from);
-    return {std::move(out), {}, std::move(rows)};
+    return {std::move(out), {}, rows};
 }
 
 /// Each face with three vertices of its own.
