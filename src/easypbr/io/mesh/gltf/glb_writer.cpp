@@ -186,7 +186,7 @@ class GlbBuilder {
         xyzw.rowwise().normalize();
         attributes[splat_rotation_name] = add_floats(xyzw.data(), rows, 4);
         attributes[splat_scale_name] = add_floats(splats.scales.data(), rows, 3);
-        attributes[splat_opacity_name] = add_floats(splats.opacities.data(), rows, 1);
+        attributes[splat_opacity_attribute] = add_floats(splats.opacities.data(), rows, 1);
         Eigen::Index column = 0;
         for (int degree = 0; degree <= splats.degree(); ++degree)
             for (int k = 0; k <= 2 * degree; ++k, column += 3) {

@@ -91,7 +91,7 @@ class SplatPrimitiveReader {
         rows.scales = require(splat_scale_name, 3);
         const ArrayXf::Dense xyzw = require(splat_rotation_name, 4);
         rows.rotations << xyzw.col(3), xyzw.leftCols(3);
-        rows.opacities = require(splat_opacity_name, 1).col(0);
+        rows.opacities = require(splat_opacity_attribute, 1).col(0);
         if (!(rows.opacities.minCoeff() >= 0 && rows.opacities.maxCoeff() <= 1))
             fail("has opacities of splats that are not from 0 to 1");
         Eigen::Index column = 0;

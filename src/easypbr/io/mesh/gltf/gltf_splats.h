@@ -15,7 +15,7 @@ inline constexpr const char* khr_splats_as_spz = "KHR_gaussian_splatting_compres
 // Names of the attributes.
 inline constexpr const char* splat_rotation_name = "KHR_gaussian_splatting:ROTATION";  ///< x, y, z, w
 inline constexpr const char* splat_scale_name = "KHR_gaussian_splatting:SCALE";        ///< no logarithm
-inline constexpr const char* splat_opacity_name = "KHR_gaussian_splatting:OPACITY";
+inline constexpr const char* splat_opacity_attribute = "KHR_gaussian_splatting:OPACITY";
 /// Of the k-th spherical harmonic of a degree.
 std::string splat_harmonic_name(int degree, int k);
 
