@@ -184,8 +184,8 @@ class GlbBuilder {
         Array4f::Dense xyzw(splats.rotations.rows(), 4);
         xyzw << splats.rotations.rightCols(3), splats.rotations.col(0);
         xyzw.rowwise().normalize();
-        attributes[splat_rotation_name] = add_floats(xyzw.data(), rows, 4);
-        attributes[splat_scale_name] = add_floats(splats.scales.data(), rows, 3);
+        attributes[splat_rotation_attribute] = add_floats(xyzw.data(), rows, 4);
+        attributes[splat_scale_attribute] = add_floats(splats.scales.data(), rows, 3);
         attributes[splat_opacity_attribute] = add_floats(splats.opacities.data(), rows, 1);
         Eigen::Index column = 0;
         for (int degree = 0; degree <= splats.degree(); ++degree)

@@ -88,8 +88,8 @@ class SplatPrimitiveReader {
         const Source source(std::string_view(), document_.path());
         SplatRows rows(source, size_t(count_), degree);
         rows.V = V;
-        rows.scales = require(splat_scale_name, 3);
-        const ArrayXf::Dense xyzw = require(splat_rotation_name, 4);
+        rows.scales = require(splat_scale_attribute, 3);
+        const ArrayXf::Dense xyzw = require(splat_rotation_attribute, 4);
         rows.rotations << xyzw.col(3), xyzw.leftCols(3);
         rows.opacities = require(splat_opacity_attribute, 1).col(0);
         if (!(rows.opacities.minCoeff() >= 0 && rows.opacities.maxCoeff() <= 1))

@@ -13,8 +13,8 @@ inline constexpr const char* khr_gaussian_splatting = "KHR_gaussian_splatting";
 inline constexpr const char* khr_splats_as_spz = "KHR_gaussian_splatting_compression_spz_2";
 
 // Names of the attributes.
-inline constexpr const char* splat_rotation_name = "KHR_gaussian_splatting:ROTATION";  ///< x, y, z, w
-inline constexpr const char* splat_scale_name = "KHR_gaussian_splatting:SCALE";        ///< no logarithm
+inline constexpr const char* splat_rotation_attribute = "KHR_gaussian_splatting:ROTATION";  ///< x, y, z, w
+inline constexpr const char* splat_scale_attribute = "KHR_gaussian_splatting:SCALE";        ///< no logarithm
 inline constexpr const char* splat_opacity_attribute = "KHR_gaussian_splatting:OPACITY";
 /// Of the k-th spherical harmonic of a degree.
 std::string splat_harmonic_name(int degree, int k);
