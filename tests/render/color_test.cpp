@@ -15,6 +15,17 @@
 namespace easypbr::render::color_test {
 namespace {
 
+/// Of the plane z = 0, in the picture from above.
+const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+
+/// Of 128 x 128 pixels, along -z.
+Image picture_from_above(const Scene& scene, bool native) {
+    app::Session session = plain_session(scene, 128);
+    session.allow_native_geometry(native);
+    look_from(session, Vec3d(0, 0, 4));
+    return session.render({std::nullopt, 1, app::Encoding::srgb8});
+}
+
 MeshData labelled_cloud(int n) {
     std::mt19937 random(3);
     std::normal_distribution<float> normal;
@@ -134,7 +145,6 @@ TEST(Colors, OfValuesAreThoseOfTheTable) {
     ASSERT_EQ(plan.source, ColorSource::values);
     // The square is 119.4 pixels wide, so that a pixel spans two of the 256 steps: either neighbour may be
     // hit.
-    const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
     for (int x = 10; x < 118; ++x) {
         const auto value = float((x + 0.5 - 64) / pixels_per_unit);
         const int step = color_index(value, colors.range);
@@ -185,11 +195,7 @@ TEST(Colors, OfValuesAreThoseOfTheTableInLargeMeshes) {
     Scene scene;
     scene.show(mesh, "mesh");
     for (const bool native : {true, false}) {
-        app::Session session = plain_session(scene, 128);
-        session.allow_native_geometry(native);
-        look_from(session, Vec3d(0, 0, 4));
-        const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
-        const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+        const Image picture = picture_from_above(scene, native);
         // The square is 119.4 pixels wide.
         for (int row = 6; row < 122; ++row)
             for (int column = 6; column < 122; ++column) {
@@ -224,7 +230,6 @@ TEST(Colors, OfAChosenRangeStayWhereTheirValuesAre) {
     app::Session session = plain_session(scene, 128);
     look_from(session, Vec3d(0, 0, 4));
     const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
-    const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
     for (int x = 10; x < 118; ++x) {
         const double value = (x + 0.5 - 64) / pixels_per_unit;
         // Grey: the colour is its place in the table. A rounding error may take the neighbour.
@@ -279,11 +284,7 @@ TEST(Colors, OfTextureCoordinatesRepeat) {
     Scene scene;
     scene.show(mesh, "square");
     for (const bool native : {true, false}) {
-        app::Session session = plain_session(scene, 128);
-        session.allow_native_geometry(native);
-        look_from(session, Vec3d(0, 0, 4));
-        const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
-        const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+        const Image picture = picture_from_above(scene, native);
         const auto coordinate = [&](double pixel) {
             const double u = 2 * (1 + (pixel + 0.5 - 64) / pixels_per_unit);
             return 255 * (u - std::floor(u));

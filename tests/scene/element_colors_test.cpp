@@ -8,6 +8,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/label_colors.h"
+#include "scene/refusal.h"
 
 namespace easypbr::element_colors_test {
 
@@ -48,16 +49,6 @@ Style by(ColorBy choice) {
     Style style;
     style.color_by = choice;
     return style;
-}
-
-template <class Work>
-std::string message_of(Work&& work) {
-    try {
-        work();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no error";
 }
 
 void add_texture(MeshData& mesh) {
@@ -135,13 +126,13 @@ TEST(ElementColors, SayWhatTheObjectLacks) {
     MeshData mesh = strip();
     const auto own = [&](ColorBy choice) {
         mesh.style.color_by = choice;
-        return message_of([&] { plan(mesh); });
+        return refusal([&] { plan(mesh); });
     };
     EXPECT_EQ(own(ColorBy::label), "mesh 'strip': its style's color_by is label, but it has no labels (L)");
     EXPECT_EQ(own(ColorBy::uv),
               "mesh 'strip': its style's color_by is uv, but it has no texture coordinates (UV)");
     EXPECT_EQ(own(ColorBy::scalar), "mesh 'strip': its style's color_by is scalar, but it has no scalars");
-    EXPECT_EQ(own(ColorBy::normal), "no error");
+    EXPECT_EQ(own(ColorBy::normal), "taken");
     mesh.scalars = {{"curvature", values({0, 1, 2, 3})}, {"none", {}}};
     mesh.style.scalar = std::string("curvatur");
     EXPECT_EQ(own(ColorBy::scalar),
@@ -152,8 +143,7 @@ TEST(ElementColors, SayWhatTheObjectLacks) {
     mesh.style.color_min = 2.0f;
     mesh.style.color_max = 1.0f;
     mesh.style.color_by = ColorBy::height;
-    EXPECT_EQ(message_of([&] { colors(mesh); }),
-              "style: expected color_min not above color_max, got 2 and 1");
+    EXPECT_EQ(refusal([&] { colors(mesh); }), "style: expected color_min not above color_max, got 2 and 1");
 }
 
 TEST(ElementColors, SayWhatNoObjectHas) {
@@ -162,15 +152,15 @@ TEST(ElementColors, SayWhatNoObjectHas) {
     rich.scalars = {{"curvature", values({0, 1, 2, 3})}};
     for (const MeshData& mesh : {plain, rich})
         scene.objects.push_back({mesh.name, std::make_shared<const MeshData>(mesh), here});
-    EXPECT_EQ(message_of([&] { require_colors(scene, by(ColorBy::scalar)); }), "no error");
-    EXPECT_EQ(message_of([&] { require_colors(scene, by(ColorBy::label)); }),
+    EXPECT_EQ(refusal([&] { require_colors(scene, by(ColorBy::scalar)); }), "taken");
+    EXPECT_EQ(refusal([&] { require_colors(scene, by(ColorBy::label)); }),
               "style.color_by is label, but the objects have no labels (L)");
     Style style;
     style.scalar = std::string("curvture");
     EXPECT_EQ(
-        message_of([&] { require_colors(scene, style); }),
+        refusal([&] { require_colors(scene, style); }),
         "style.scalar: no object has scalars 'curvture' (did you mean 'curvature'?); there are curvature");
-    EXPECT_EQ(message_of([&] { require_colors({}, style); }), "no error");
+    EXPECT_EQ(refusal([&] { require_colors({}, style); }), "taken");
 }
 
 TEST(ElementColors, LabelsHaveTheColoursOfTheirMap) {

@@ -1,27 +1,15 @@
 #include "easypbr/scene/label_map.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "scene/refusal.h"
 
 namespace easypbr::label_map_test {
-
-namespace {
-
-template <class Make>
-std::string message_of(Make&& make) {
-    try {
-        make();
-    } catch (const ArgumentError& error) {
-        return error.what();
-    }
-    return "accepted";
-}
-
-}  // namespace
 
 TEST(LabelMap, FindsLabelsWithGaps) {
     constexpr int32_t lowest = std::numeric_limits<int32_t>::min(),
@@ -63,12 +51,12 @@ TEST(LabelMap, IsThereAfterItWasMovedFrom) {
 }
 
 TEST(LabelMap, SaysWhatIsWrong) {
-    EXPECT_EQ(message_of([] { LabelMap("cars", {}); }), "label map 'cars': expected classes, got none");
-    EXPECT_EQ(message_of([] {
+    EXPECT_EQ(refusal([] { LabelMap("cars", {}); }), "label map 'cars': expected classes, got none");
+    EXPECT_EQ(refusal([] {
                   LabelMap("cars", {{1, "a", {}}, {0, "b", {}}, {1, "c", {}}});
               }),
               "label map 'cars': label 1 occurs twice, as 'a' and 'c'");
-    EXPECT_EQ(message_of([] {
+    EXPECT_EQ(refusal([] {
                   LabelMap("cars", {{1, "a", {}}, {3, "b", {}}}, 2);
               }),
               "label map 'cars': the unlabelled class 2 is not among the 2 labels from 1 to 3");
