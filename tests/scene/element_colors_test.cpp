@@ -126,7 +126,7 @@ TEST(ElementColors, SayWhatTheObjectLacks) {
     MeshData mesh = strip();
     const auto own = [&](ColorBy choice) {
         mesh.style.color_by = choice;
-        return refusal([&] { plan(mesh); });
+        return refusal<Error>([&] { plan(mesh); });
     };
     EXPECT_EQ(own(ColorBy::label), "mesh 'strip': its style's color_by is label, but it has no labels (L)");
     EXPECT_EQ(own(ColorBy::uv),
@@ -143,7 +143,8 @@ TEST(ElementColors, SayWhatTheObjectLacks) {
     mesh.style.color_min = 2.0f;
     mesh.style.color_max = 1.0f;
     mesh.style.color_by = ColorBy::height;
-    EXPECT_EQ(refusal([&] { colors(mesh); }), "style: expected color_min not above color_max, got 2 and 1");
+    EXPECT_EQ(refusal<Error>([&] { colors(mesh); }),
+              "style: expected color_min not above color_max, got 2 and 1");
 }
 
 TEST(ElementColors, SayWhatNoObjectHas) {
@@ -152,15 +153,15 @@ TEST(ElementColors, SayWhatNoObjectHas) {
     rich.scalars = {{"curvature", values({0, 1, 2, 3})}};
     for (const MeshData& mesh : {plain, rich})
         scene.objects.push_back({mesh.name, std::make_shared<const MeshData>(mesh), here});
-    EXPECT_EQ(refusal([&] { require_colors(scene, by(ColorBy::scalar)); }), "taken");
-    EXPECT_EQ(refusal([&] { require_colors(scene, by(ColorBy::label)); }),
+    EXPECT_EQ(refusal<Error>([&] { require_colors(scene, by(ColorBy::scalar)); }), "taken");
+    EXPECT_EQ(refusal<Error>([&] { require_colors(scene, by(ColorBy::label)); }),
               "style.color_by is label, but the objects have no labels (L)");
     Style style;
     style.scalar = std::string("curvture");
     EXPECT_EQ(
-        refusal([&] { require_colors(scene, style); }),
+        refusal<Error>([&] { require_colors(scene, style); }),
         "style.scalar: no object has scalars 'curvture' (did you mean 'curvature'?); there are curvature");
-    EXPECT_EQ(refusal([&] { require_colors({}, style); }), "taken");
+    EXPECT_EQ(refusal<Error>([&] { require_colors({}, style); }), "taken");
 }
 
 TEST(ElementColors, LabelsHaveTheColoursOfTheirMap) {

@@ -7,12 +7,12 @@
 
 namespace easypbr {
 
-/// "taken" where the job throws no ArgumentError.
-template <class Job>
+/// "taken" where the job throws nothing of this kind.
+template <class Refusal = ArgumentError, class Job>
 std::string refusal(Job&& job) {
     try {
         job();
-    } catch (const ArgumentError& error) {
+    } catch (const Refusal& error) {
         return error.what();
     }
     return "taken";
