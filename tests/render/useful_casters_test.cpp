@@ -171,7 +171,7 @@ TEST(UsefulCasters, LeaveOutWallsAroundALamp) {
 }
 
 // A sheet 0.1 above a floor that is 4000 times as wide as its shadow keeps it: of the light along (1, 0, -1)
-// the part from 0.25 to 0.35 is seen. Pixels are 0.022 wide. So it does with a map of its own size.
+// the part from 0.25 to 0.35 is seen. Pixels are 0.022 wide.
 TEST(UsefulCasters, FloorsTakeNoTexels) {
     Material matt;
     matt.base_color = Vec3::Constant(0.5f);

@@ -1,4 +1,4 @@
-// An allocator of std::vector by functions of one's own.
+// An allocator for std::vector that leaves new elements uninitialized.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@
 
 namespace easypbr {
 
-/// Takes and gives back bytes by these functions. Elements that are given no value are undefined.
+/// Allocates by take(bytes) and frees by give(memory, bytes). Elements that are given no value are
+/// uninitialized.
 template <class T, void* (*take)(size_t), void (*give)(void*, size_t) noexcept>
 struct UninitializedAllocator {
     using value_type = T;
