@@ -1,8 +1,11 @@
 // Floors are left out of shadow maps, and nothing else is.
 #include "easypbr/render/shadow/useful_casters.h"
 
+#include <fmt/format.h>
+
 #include <vector>
 
+#include "easypbr/gl/program.h"
 #include "easypbr/render/primitives/caches.h"
 #include "easypbr/render/shadow/caster_bounds.h"
 #include "shadow_test.h"
@@ -91,13 +94,27 @@ TEST(UsefulCasters, LeaveOutAFloor) {
     EXPECT_EQ(left_out(casters, lamp_at(Vec3(0, 0, 3), 0.5f)), 1u);
 }
 
+// Light from the top of the ball, 2 above the floor, goes 2 units to it straight down, and 2.83 at 45
+// degrees. The penumbra's radius there is a quarter of that, and the map's width as many times larger as the
+// filter may not be.
 TEST(UsefulCasters, HaveRoomForPenumbrae) {
-    const std::vector<CasterExtent> casters{floor_of_20, ball_at(Vec3d(1, 0, 1), 1)};
-    const UsefulCasters useful =
-        useful_casters(sun_along(Vec3(0, 0, -1)), CasterSet(casters), 0.6, std::nullopt);
-    // 0.6 / 0.15 is 4 of width, as far as there is anything.
-    EXPECT_EQ(useful.bounds.min(), Vec3d(-1, -2, 0));
-    EXPECT_EQ(useful.bounds.max(), Vec3d(3, 2, 2));
+    const CasterSet casters({floor_of_20, ball_at(Vec3d(1, 0, 1), 1)});
+    for (const float slope : {0.0f, 1.0f}) {
+        const UsefulCasters useful =
+            useful_casters(sun_along(Vec3(slope, 0, -1)), casters, 0.25, std::nullopt);
+        const double half = 0.25 * 2 * std::hypot(1, double(slope)) / widest_filter / 2;
+        EXPECT_LT((useful.bounds.min() - Vec3d(1 - half, -half, 0)).norm(), 1e-6) << slope;  // of floats
+        EXPECT_LT((useful.bounds.max() - Vec3d(1 + half, half, 2)).norm(), 1e-6) << slope;
+    }
+    // 4 above the ball's top, whose penumbra on the floor is as large as half the lamp.
+    const UsefulCasters useful = useful_casters(lamp_at(Vec3(1, 0, 6), 1), casters, 1, std::nullopt);
+    EXPECT_GE(useful.bounds.sizes().x(), 0.5 / widest_filter);
+    EXPECT_EQ(useful.left_out.size(), 1u);
+}
+
+TEST(UsefulCasters, FiltersAreAsWideAsTheShaders) {
+    const std::string text = gl::shader_source("common_shadow_filter.glsl");
+    EXPECT_NE(text.find(fmt::format("const float widest = {};", widest_filter)), text.npos);
 }
 
 // From below, from behind the plane, or from both sides of it, the floor hides the light.

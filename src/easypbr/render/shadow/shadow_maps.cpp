@@ -32,19 +32,6 @@ int most_layers(int resolution, bool tinted) {
 /// the depth of a distant camera are rounded.
 constexpr double slack = 0.01;
 
-/// No less than the radius of the widest penumbrae of a light of this extent_of() within the bounds of all
-/// casters. Of the powers of two, so that maps stay while a light grows.
-double widest_penumbra(const ResolvedLight& light, double extent, const Box3d& all) {
-    const double diagonal = all.isEmpty() ? 0 : all.diagonal().norm();
-    if (!(extent > 0)) return 0;
-    double part = extent;
-    if (light.type != LightType::directional) {
-        const double nearest = all.isEmpty() ? 0 : std::sqrt(all.squaredExteriorDistance(light.position));
-        part = extent < nearest ? extent / nearest : 1;
-    }
-    return diagonal * std::exp2(std::ceil(std::log2(part)));
-}
-
 FacePlane ground_of(const ResolvedSettings& resolved) {
     return {parse_up(resolved.settings.camera.up), double(resolved.settings.ground.height)};
 }
@@ -126,7 +113,7 @@ ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Fra
     const ResolvedLight sampled = sampled_light(light, frame.sample_index, samples);
     const auto ground =
         receivers == Receivers::on_ground ? std::optional(ground_of(*frame.resolved)) : std::nullopt;
-    request.casters = useful_casters(light, extent_.last(), widest_penumbra(light, extent, bounds_), ground);
+    request.casters = useful_casters(light, extent_.last(), extent, ground);
     const auto projection = project_shadows(sampled, request.casters.bounds, settings.resolution,
                                             most_pushed * extent_.last().reach);
     if (!projection) return request;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "easypbr/scene/light_falloff.h"
@@ -19,9 +20,6 @@ constexpr double beside = 1e-3;
 constexpr double on_ground = 1e-3;
 /// Maps of more than this part of all casters are not worth it.
 constexpr double least_gain = 0.7;
-/// Shadows are filtered this far around a place at most, as a part of a map:
-/// shaders/common_shadow_filter.glsl.
-constexpr double widest_filter = 0.15;
 
 double diagonal_of(const CasterExtent& caster) {
     const Box3d box = caster.drawn();
@@ -39,18 +37,51 @@ Heights heights_of(const Box3d& box, const FacePlane& plane) {
     return {middle - half, middle + half};
 }
 
+/// All of a light that is not directional lies within a sphere of this radius around its position.
+double radius_of(const ResolvedLight& light) {
+    if (light.type != LightType::rectangle) return light.radius;
+    const EmitterAxes axes = emitter_axes(light);
+    return axes.x.norm() + axes.y.norm();
+}
+
+/// The angle by which all of a directional light stands above a plane, radians.
+double elevation_of(const ResolvedLight& light, const FacePlane& plane) {
+    const Vec3d towards = -light.direction.cast<double>().normalized();
+    return std::asin(std::clamp(plane.normal.dot(towards), -1.0, 1.0)) -
+           radians(double(light.angular_radius_deg));
+}
+
+/// How far above a plane the lowest point of a light is that is not directional.
+double height_of(const ResolvedLight& light, const FacePlane& plane) {
+    return plane.normal.dot(light.position) - plane.offset - radius_of(light);
+}
+
 /// Whether all of a light lies above a plane.
 bool is_above(const ResolvedLight& light, const FacePlane& plane) {
-    if (light.type == LightType::directional) {
-        const Vec3d towards = -light.direction.cast<double>().normalized();
-        return plane.normal.dot(towards) > std::sin(radians(double(light.angular_radius_deg)));
+    return (light.type == LightType::directional ? elevation_of(light, plane) : height_of(light, plane)) > 0;
+}
+
+/// No less than the way of light from within a box to a plane below it; infinite where there may be none.
+double longest_way(const ResolvedLight& light, const Box3d& box, const FacePlane& plane) {
+    const double height = std::max(heights_of(box, plane).highest, 0.0);
+    if (light.type == LightType::directional) return height / std::sin(elevation_of(light, plane));
+    const double above = height_of(light, plane) - height;
+    const Vec3d farthest =
+        (box.min() - light.position).cwiseAbs().cwiseMax((box.max() - light.position).cwiseAbs());
+    return above > 0 ? height * std::hypot(1, (farthest.norm() + radius_of(light)) / above)
+                     : std::numeric_limits<double>::infinity();
+}
+
+/// No less than the radius of the widest penumbra of a light at this distance behind casters within a box.
+/// Its extent is taken for the next power of two, so that maps stay while a light grows.
+double widest_penumbra(const ResolvedLight& light, double extent, const Box3d& box, double distance) {
+    if (!(extent > 0)) return 0;
+    double part = extent;
+    if (light.type != LightType::directional) {
+        const double nearest = std::sqrt(box.squaredExteriorDistance(light.position));
+        part = extent < nearest ? extent / nearest : 1;
     }
-    double around = light.radius;
-    if (light.type == LightType::rectangle) {
-        const EmitterAxes axes = emitter_axes(light);
-        around = axes.x.norm() + axes.y.norm();
-    }
-    return plane.normal.dot(light.position) - plane.offset > around;
+    return distance * std::exp2(std::ceil(std::log2(part)));
 }
 
 bool lies_on(const CasterExtent& caster, const FacePlane& plane, const FacePlane& ground) {
@@ -115,9 +146,10 @@ CasterSet::CasterSet(std::vector<CasterExtent> casters) : extents(std::move(cast
         if (!std::ranges::binary_search(convex, i)) others.extend(extents[i].drawn());
 }
 
-UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& casters, double penumbra,
+UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& casters, double extent,
                              const std::optional<FacePlane>& ground) {
     UsefulCasters found;
+    std::vector<FacePlane> floors;
     Box3d rest = casters.others;
     for (const size_t i : casters.convex) {
         const CasterExtent& caster = casters.extents[i];
@@ -125,14 +157,20 @@ UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& caster
             return is_above(light, plane) && (!ground || lies_on(caster, plane, *ground)) &&
                    hides_nothing(casters, i, plane);
         };
-        if (std::ranges::any_of(caster.planes, is_useless))
-            found.left_out.push_back(i);
-        else
+        const auto plane = std::ranges::find_if(caster.planes, is_useless);
+        if (plane == caster.planes.end()) {
             rest.extend(caster.drawn());
+        } else {
+            found.left_out.push_back(i);
+            floors.push_back(*plane);
+        }
     }
     const UsefulCasters all{casters.bounds, {}};
     if (found.left_out.empty() || rest.isEmpty() || !(rest.diagonal().norm() > 0)) return all;
-    found.bounds = with_room(rest, penumbra, casters.bounds);
+    // All that is lit lies above each floor, so that the way behind a caster ends at the nearest one.
+    double behind = casters.bounds.diagonal().norm();
+    for (const FacePlane& plane : floors) behind = std::min(behind, longest_way(light, rest, plane));
+    found.bounds = with_room(rest, widest_penumbra(light, extent, rest, behind), casters.bounds);
     return found.bounds.diagonal().norm() < least_gain * casters.bounds.diagonal().norm() ? found : all;
 }
 

@@ -37,12 +37,17 @@ struct UsefulCasters {
     std::vector<size_t> left_out;  ///< casters, by their indices, in rising order
 };
 
+/// Shadows are filtered this far around a place at most, as a part of a map: as
+/// shaders/common_shadow_filter.glsl has it.
+constexpr double widest_filter = 0.15;
+
 /// Leaves out flat and convex casters with a face above which are the light and all others: they hide the
 /// light from nothing, and maps of what stands on them are finer. Others of less than half their size may
-/// sink in by 1/100 of their own, and any may be lower by 1/1000 of the size of the smaller one. `penumbra`:
-/// the radius of the light's widest penumbrae, world units, which the maps have room for. `ground`: the plane
-/// that receives shadows besides, which casters that are left out lie on.
-UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& casters, double penumbra,
+/// sink in by 1/100 of their own, and any may be lower by 1/1000 of the size of the smaller one. `extent`:
+/// the radius of the light, world units, or the tangent of a directional light's angular radius; 0 for hard
+/// shadows. Maps have room for the penumbrae that it gives. `ground`: the plane that receives shadows
+/// besides, which casters that are left out lie on.
+UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& casters, double extent,
                              const std::optional<FacePlane>& ground);
 
 }  // namespace easypbr::render
