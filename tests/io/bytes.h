@@ -1,8 +1,11 @@
 // Binary files for tests, value by value, little-endian; made without the library.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
+#include <span>
 #include <string>
 
 class Bytes {
@@ -36,3 +39,8 @@ class Bytes {
   private:
     std::string text_;
 };
+
+/// What readers take; the text has to live as long.
+inline std::span<const std::byte> as_span(const std::string& text) {
+    return std::as_bytes(std::span(text.data(), text.size()));
+}

@@ -4,9 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include <cstring>
-#include <span>
 #include <string>
 #include <vector>
+
+#include "io/bytes.h"
 
 class GltfBuilder {
   public:
@@ -68,7 +69,3 @@ class GltfBuilder {
         return std::string(reinterpret_cast<const char*>(&w), 4);
     }
 };
-
-inline std::span<const std::byte> as_span(const std::string& text) {
-    return std::as_bytes(std::span(text.data(), text.size()));
-}
