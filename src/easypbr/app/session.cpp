@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "easypbr/app/annotation.h"
-#include "easypbr/app/pinned_camera.h"
 #include "easypbr/app/prepared.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/stopwatch.h"
@@ -14,19 +13,6 @@
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
-namespace {
-
-/// Whether the camera is still to be placed for the content, or to be made as wide as that is.
-bool frames_content(const CameraSettings& camera) {
-    const bool places = camera.pose.empty() && !camera.position.value();
-    return places || (camera.projection == Projection::orthographic && !camera.ortho_height.value());
-}
-
-Insets strip_of(const SceneSnapshot& scene, const InferredSettings& settings, Vec2i size) {
-    return annotation_strip(annotation_of(scene, settings), settings.annotation, size);
-}
-
-}  // namespace
 
 void check_picture_size(Vec2i size) {
     if (size.x() < 1 || size.y() < 1 || size.x() > max_image_side || size.y() > max_image_side)
@@ -121,30 +107,6 @@ SceneSnapshot Session::snapshot() {
     return scene;
 }
 
-ResolvedSettings Session::resolve_framed(const SceneSnapshot& scene, Vec2i size,
-                                         std::optional<int> samples) const {
-    ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size, samples, insets_);
-    if (!frames_content(settings_->camera)) return resolved;
-    const Insets covered = insets_.with(strip_of(scene, resolved.settings, size));
-    return covered == insets_ ? resolved : easypbr::resolve(scene, *settings_, size, samples, covered);
-}
-
-Insets Session::annotation_strip(std::optional<Vec2i> size) {
-    const AnnotationSettings& asked = settings_->annotation;
-    if (!asked.legend.value_or(false) && !asked.colorbar.value_or(false)) return {};
-    check_picture_size(size_or(size));
-    const SceneSnapshot scene = snapshot();
-    return strip_of(scene, easypbr::resolve(scene, *settings_, size_or(size)).settings, size_or(size));
-}
-
-ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
-    check_picture_size(size_or(size));
-    const SceneSnapshot scene = snapshot();
-    ResolvedSettings resolved = resolve_framed(scene, size_or(size));
-    latched_content_.follow(scene, *settings_, resolved);
-    return resolved;
-}
-
 Prepared Session::prepare(const PictureOptions& options) {
     Prepared prepared = gather(options);
     infer(prepared);
@@ -181,20 +143,7 @@ TiledPicture Session::tiled(const Prepared& prepared) const {
 Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
     Drawn drawn;
     drawn.camera_ = prepared.resolved.camera;
-    drawn.finish_.lens = lenses_.get(drawn.camera_, prepared.options.size);
-    if (auto& motion = prepared.options.motion;
-        motion && (drawn.camera_.is_warped() || motion->camera.is_warped())) {
-        auto as_drawn = std::make_shared<Motion>(*motion);
-        as_drawn->camera = drawn_before(motion->camera, drawn.camera_, drawn.lens());
-        motion = std::move(as_drawn);
-    }
-    if (drawn.camera_.is_warped()) {
-        prepared.options.exact_pixels = picture;
-        if (picture && !prepared.options.layers) put_image_behind(drawn, prepared);
-        prepared.options.size = drawn.lens().drawn_size;
-        prepared.resolved.camera.distortion.reset();
-        prepared.resolved.camera.intrinsics = drawn.lens().drawn.intrinsics;
-    }
+    apply_lens(drawn, prepared, picture);
     renderer();
     drawn.device_ = device_.shared();
     // Numbers are taken before anything is drawn: a drawing that fails outdates what was there as well.
@@ -203,21 +152,6 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
     if (picture) drawn.picture_ = ++device_->picture;
     if (surfaces) drawn.surfaces_ = device_->surfaces;
     return drawn;
-}
-
-void Session::put_image_behind(Drawn& drawn, Prepared& prepared) {
-    const BackgroundSettings& background = prepared.resolved.settings.background;
-    if (background.mode != BackgroundMode::image || !prepared.images.background) return;
-    render::DrawOptions& options = prepared.options;
-    drawn.finish_.backdrop =
-        backdrops_.get(background, prepared.images.background, options.size, options.encoding);
-    options.without_image = true;
-    // Alpha of 8 bits is too coarse for what is mixed in linear light: near black a step is 13 codes.
-    if (options.encoding == Encoding::srgb8) options.encoding = Encoding::srgb16;
-}
-
-void Session::keep_exact(Drawn& drawn, const Image& exact) {
-    if (!exact.empty()) drawn.finish_.exact = std::make_shared<const Image>(exact);
 }
 
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {
@@ -360,16 +294,6 @@ PickBuffer Session::pick_once(std::optional<Vec2i> size) {
     return {drawn.surfaces(), drawn.camera(), drawn.shared_lens()};
 }
 
-ViewPoint Session::view_point(std::optional<Vec2i> size) {
-    const ResolvedSettings resolved = resolve(size);
-    return {resolved.camera, resolved.settings.camera.target};
-}
-
-Vec3d Session::up() {
-    const std::optional<std::string>& known = settings_->camera.up.value();
-    return parse_up(known ? *known : resolve().settings.camera.up);
-}
-
 std::map<std::string, Image> Session::render_layers(const std::vector<std::string>& names,
                                                     std::optional<Vec2i> size) {
     std::vector<render::Layer> layers;
@@ -451,18 +375,6 @@ double Session::focus_at(int x, int y, std::optional<Vec2i> size) {
         throw ArgumentError(fmt::format("focus: pixel ({}, {}) shows nothing to focus on", x, y));
     settings_->depth_of_field.focus_distance = depth;
     return depth;
-}
-
-void Session::set_view_point(const ViewPoint& view) {
-    pin_view_point(settings_->camera, view);
-}
-
-void Session::set_camera(const Camera& camera) {
-    pin_camera(settings_->camera, camera);
-}
-
-Camera Session::camera() {
-    return resolve().camera;
 }
 
 void Session::refit() {

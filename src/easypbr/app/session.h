@@ -225,10 +225,12 @@ class Session {
     /// An automatic camera that is not latched yet leaves the insets and the annotation's strip free.
     ResolvedSettings resolve_framed(const SceneSnapshot& scene, Vec2i size,
                                     std::optional<int> samples = std::nullopt) const;
-    /// Before anything is drawn: replaces a camera that is warped, the size, and the camera that the motion
-    /// begins from by what has to be drawn; outdates what was drawn before. Returns what will be drawn, a
+    /// Before anything is drawn: apply_lens(); outdates what was drawn before. Returns what will be drawn, a
     /// picture, surfaces, or both.
     Drawn begin(Prepared& prepared, bool picture, bool surfaces);
+    /// Replaces a camera that is warped, the size, and the camera that the motion begins from by what has to
+    /// be drawn.
+    void apply_lens(Drawn& drawn, Prepared& prepared, bool picture);
     /// Of a picture that a lens warps: leaves a background image out of what is drawn, and puts it behind the
     /// warped picture. It is in the picture's pixels, which the lens made.
     void put_image_behind(Drawn& drawn, Prepared& prepared);
