@@ -5,6 +5,7 @@
 
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::arrows_test {
 namespace {

@@ -5,6 +5,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/merge.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::components_test {
 namespace {

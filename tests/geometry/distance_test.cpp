@@ -10,6 +10,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/sample.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::distance_test {
 namespace {

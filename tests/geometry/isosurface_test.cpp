@@ -14,7 +14,8 @@
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/repair.h"
 #include "easypbr/geometry/sample.h"
-#include "measure.h"
+#include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::isosurface_test {
 namespace {

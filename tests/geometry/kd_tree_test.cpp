@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::kd_tree_test {
 namespace {

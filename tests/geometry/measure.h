@@ -4,11 +4,9 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <string>
 #include <tuple>
 #include <utility>
 
-#include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
 #include "easypbr/scene/mesh_data.h"
 
@@ -82,17 +80,6 @@ inline std::pair<double, double> normal_agreement(const MeshData& mesh) {
         }
     }
     return {least, sum / double(3 * mesh.F.rows())};
-}
-
-/// The message of the ArgumentError that `call` throws; empty when it throws none.
-template <class Call>
-std::string refusal(Call&& call) {
-    try {
-        call();
-    } catch (const ArgumentError& error) {
-        return error.what();
-    }
-    return {};
 }
 
 }  // namespace easypbr

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::primitives_test {
 namespace {

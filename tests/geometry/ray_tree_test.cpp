@@ -14,6 +14,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/mesh.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::ray_tree_test {
 namespace {

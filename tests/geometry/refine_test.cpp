@@ -6,6 +6,7 @@
 
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::refine_test {
 namespace {

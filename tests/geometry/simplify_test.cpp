@@ -11,6 +11,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/merge.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 #include "test_data.h"
 
 namespace easypbr::simplify_test {

@@ -8,6 +8,7 @@
 
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::subsample_test {
 namespace {

@@ -11,6 +11,7 @@
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/normals.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 #include "test_data.h"
 
 namespace easypbr::surfels_test {

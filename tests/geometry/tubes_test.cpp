@@ -9,6 +9,7 @@
 #include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::tubes_test {
 namespace {

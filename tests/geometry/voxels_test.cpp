@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/measure.h"
+#include "refusal.h"
 
 namespace easypbr::voxels_test {
 namespace {

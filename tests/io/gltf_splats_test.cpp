@@ -11,6 +11,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "io/gltf_builder.h"
 #include "io/packed_splats.h"
+#include "refusal.h"
 
 namespace easypbr::gltf_splats_test {
 namespace {
@@ -101,7 +102,7 @@ TEST(GltfSplats, DamagedSaysWhy) {
     const auto said = [](auto&& damage) {
         GltfBuilder builder;
         damage(splat_primitive(builder, 1), builder);
-        return message_of([&] { node_of(builder); });
+        return refusal<Error>([&] { node_of(builder); });
     };
     const std::string name = "KHR_gaussian_splatting:";
     using Json = nlohmann::json;

@@ -6,6 +6,7 @@
 #include "easypbr/io/settings/label_map_text.h"
 #include "easypbr/io/source/json_depth.h"
 #include "io/gltf_decoded.h"
+#include "refusal.h"
 
 namespace easypbr::json_depth_test {
 
@@ -16,28 +17,19 @@ std::string nested(size_t levels) {
     return std::string(levels, '[') + std::string(levels, ']');
 }
 
-std::string refusal(auto&& read) {
-    try {
-        read();
-    } catch (const FormatError& error) {
-        return error.what();
-    }
-    return "accepted";
-}
-
 }  // namespace
 
 TEST(JsonDepth, BracketsCountOutsideOfTextsAlone) {
     const auto check = [](const std::string& text) {
-        return refusal([&] { io::check_json_depth(text, "a.json"); });
+        return refusal<FormatError>([&] { io::check_json_depth(text, "a.json"); });
     };
-    EXPECT_EQ(check(nested(512)), "accepted");
+    EXPECT_EQ(check(nested(512)), "taken");
     EXPECT_EQ(check(nested(513)), "cannot read a.json: its JSON is nested more than 512 levels deep");
-    EXPECT_EQ(check("[\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"]"), "accepted");
+    EXPECT_EQ(check("[\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"]"), "taken");
     std::string wide = "[";
     for (int i = 0; i < 1000; ++i) wide += "{\"a\":[]},";
-    EXPECT_EQ(check(wide + "0]"), "accepted");
-    EXPECT_EQ(check("\"\\"), "accepted");
+    EXPECT_EQ(check(wide + "0]"), "taken");
+    EXPECT_EQ(check("\"\\"), "taken");
 }
 
 TEST(JsonDepth, IsLimitedForEveryReader) {
@@ -48,9 +40,10 @@ TEST(JsonDepth, IsLimitedForEveryReader) {
         "5126,"
         "\"count\":1,\"type\":\"VEC3\"}]}";
     const std::vector<std::string> messages = {
-        refusal([&] { io::decode_gltf(as_span(gltf), "deep"); }),
-        refusal([&] { io::parse_camera_path("{\"keys\":[{\"position\":" + deep + "}]}", "deep"); }),
-        refusal([&] { io::parse_label_map("{\"classes\":" + deep + "}", "deep.json"); })};
+        refusal<FormatError>([&] { io::decode_gltf(as_span(gltf), "deep"); }), refusal<FormatError>([&] {
+            io::parse_camera_path("{\"keys\":[{\"position\":" + deep + "}]}", "deep");
+        }),
+        refusal<FormatError>([&] { io::parse_label_map("{\"classes\":" + deep + "}", "deep.json"); })};
     for (const std::string& message : messages)
         EXPECT_NE(message.find("nested more than 512 levels deep"), std::string::npos) << message;
 }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 
-#include "easypbr/core/error.h"
 #include "easypbr/scene/mesh.h"
 #include "io/bytes.h"
 
@@ -14,16 +13,6 @@ namespace easypbr::packed_splats {
 
 /// Of the first spherical harmonic.
 inline constexpr double constant = 0.28209479177387814;
-
-template <class Read>
-std::string message_of(Read&& read) {
-    try {
-        read();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
-}
 
 inline bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;

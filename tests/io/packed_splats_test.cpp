@@ -18,6 +18,7 @@
 #include "easypbr/scene/mesh.h"
 #include "io/packed_splats.h"
 #include "io/temporary_folder.h"
+#include "refusal.h"
 
 namespace easypbr::packed_splats_test {
 namespace {
@@ -70,7 +71,7 @@ TEST(PackedSplats, SpzOfBothVersions) {
 }
 
 TEST(PackedSplats, DamagedSpzSaysWhy) {
-    const auto said = [](const std::string& packed) { return message_of([&] { read_spz(packed); }); };
+    const auto said = [](const std::string& packed) { return refusal<Error>([&] { read_spz(packed); }); };
     EXPECT_TRUE(has(said(""), "empty"));
     EXPECT_TRUE(has(said("no gzip at all, but long enough for one"), "no SPZ file"));
     EXPECT_TRUE(has(said(io::gzip("something else that is long enough")), "no SPZ file"));
@@ -159,12 +160,12 @@ TEST(PackedSplats, SpzOfVersionFourHoldsTheSame) {
 TEST(PackedSplats, DamagedSpzOfVersionFourSaysWhy) {
     const auto said = [](const Spz4& spz, size_t cut = 0) {
         const std::string file = spz.file();
-        return message_of([&] { read_spz(file.substr(0, file.size() - cut)); });
+        return refusal<Error>([&] { read_spz(file.substr(0, file.size() - cut)); });
     };
-    EXPECT_EQ(said(Spz4()), "");
-    EXPECT_TRUE(has(message_of([] { read_spz(Spz4().file().substr(0, 20)); }), "32 bytes"));
+    EXPECT_EQ(said(Spz4()), "taken");
+    EXPECT_TRUE(has(refusal<Error>([] { read_spz(Spz4().file().substr(0, 20)); }), "32 bytes"));
     EXPECT_TRUE(has(said(Spz4(), 1), "beyond the file's end"));
-    EXPECT_TRUE(has(message_of([] { read_spz(Spz4().file().substr(0, 60)); }), "table of arrays"));
+    EXPECT_TRUE(has(refusal<Error>([] { read_spz(Spz4().file().substr(0, 60)); }), "table of arrays"));
     Spz4 spz;
     spz.version = 5;
     EXPECT_TRUE(has(said(spz), "version 5"));
@@ -182,7 +183,7 @@ TEST(PackedSplats, DamagedSpzOfVersionFourSaysWhy) {
     EXPECT_TRUE(has(said(spz), "5 arrays"));
     std::string damaged = Spz4().file();
     damaged[32 + 6 * 16 + 8] ^= 0x55;
-    EXPECT_NE(message_of([&] { read_spz(damaged); }), "");
+    EXPECT_NE(refusal<Error>([&] { read_spz(damaged); }), "taken");
 }
 
 TEST(PackedSplats, WrittenSpzDiffersByItsCodes) {
@@ -238,10 +239,10 @@ TEST(PackedSplats, SpzSaysWherePositionsAreCoarse) {
 TEST(PackedSplats, SpzHoldsSplatsAlone) {
     MeshData points;
     points.V = Array3f(Array3f::Dense::Zero(2, 3));
-    EXPECT_TRUE(has(message_of([&] { io::encode_spz(points); }), "no splats"));
+    EXPECT_TRUE(has(refusal<Error>([&] { io::encode_spz(points); }), "no splats"));
     MeshData far = various_splats(2);
     far.offset = Vec3d(1e7, 0, 0);
-    EXPECT_TRUE(has(message_of([&] { io::encode_spz(far); }), "beyond"));
+    EXPECT_TRUE(has(refusal<Error>([&] { io::encode_spz(far); }), "beyond"));
     const TemporaryFolder folder;
     io::save_mesh(Mesh(various_splats(3)), folder / "a.spz");
     EXPECT_EQ(io::load_mesh(folder / "a.spz").snapshot()->V.rows(), 3);
@@ -335,9 +336,9 @@ TEST(PackedSplats, PlyWithoutColorsOfChunksHasThemFrom0To1) {
 TEST(PackedSplats, DamagedPlySaysWhy) {
     const auto said = [](const PackedPly& ply, size_t cut = 0) {
         const std::string text = ply.text();
-        return message_of([&] { read_ply(text.substr(0, text.size() - cut)); });
+        return refusal<Error>([&] { read_ply(text.substr(0, text.size() - cut)); });
     };
-    EXPECT_EQ(said({}), "");
+    EXPECT_EQ(said({}), "taken");
     EXPECT_TRUE(has(said({}, 1), "truncated"));
     EXPECT_TRUE(has(said({.chunks = 1, .drop = {}}), "2 chunks"));
     EXPECT_TRUE(has(said({.drop = "packed_scale"}), "'packed_scale'"));
@@ -346,10 +347,10 @@ TEST(PackedSplats, DamagedPlySaysWhy) {
     std::string text = PackedPly().text();
     const float nan = std::nanf("");
     std::memcpy(text.data() + text.find("end_header\n") + 11, &nan, sizeof nan);
-    EXPECT_TRUE(has(message_of([&] { read_ply(text); }), "splat 0 of 300"));
+    EXPECT_TRUE(has(refusal<Error>([&] { read_ply(text); }), "splat 0 of 300"));
     text = PackedPly().text();
     text.replace(text.find("little"), 6, "big");
-    EXPECT_TRUE(has(message_of([&] { read_ply(text); }), "little-endian"));
+    EXPECT_TRUE(has(refusal<Error>([&] { read_ply(text); }), "little-endian"));
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/animation.h"
+#include "refusal.h"
 #include "scene/animation_channels.h"
-#include "scene/refusal.h"
 
 namespace easypbr::animation_channel_test {
 namespace {

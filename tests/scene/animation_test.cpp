@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "refusal.h"
 #include "scene/animation_channels.h"
-#include "scene/refusal.h"
 
 namespace easypbr::animation_test {
 namespace {

@@ -8,7 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/mesh.h"
-#include "scene/refusal.h"
+#include "refusal.h"
 
 namespace easypbr::array_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/label_colors.h"
-#include "scene/refusal.h"
+#include "refusal.h"
 
 namespace easypbr::element_colors_test {
 

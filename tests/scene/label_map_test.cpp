@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
-#include "scene/refusal.h"
+#include "refusal.h"
 
 namespace easypbr::label_map_test {
 
