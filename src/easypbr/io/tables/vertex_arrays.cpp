@@ -150,11 +150,6 @@ void warn_of_lost(const Source& source, const std::string& name, const Rounding*
     if (rounding) warn_of_rounding(source.path.string(), name, rounding->counts());
 }
 
-void warn_of_left_out_scalars(const Source& source, const std::string& name) {
-    log_warning(fmt::format("{}: the scalars '{}' of the faces are left out: there are others of that name",
-                            source.path.string(), name));
-}
-
 /// Values that stand for none become NaN.
 void clear_missing(const Property& property, Array1f::Dense& values) {
     if (!property.missing) return;
@@ -279,6 +274,14 @@ void VertexArrays::move_into(MeshData& mesh, const Source& source) {
     *this = {};
 }
 
+void warn_of_left_out_values(const Source& source, std::string_view values, std::string_view why) {
+    log_warning(fmt::format("{}: {} of the faces are left out: {}", source.path.string(), values, why));
+}
+
+void warn_of_taken_name(const Source& source, const std::string& name) {
+    warn_of_left_out_values(source, fmt::format("the scalars '{}'", name), "there are others of that name");
+}
+
 FaceArrays::FaceArrays(ElementPlan& plan) {
     std::vector<VertexField> fields;
     for (size_t i = 0; i < plan.columns.size(); ++i)
@@ -307,14 +310,12 @@ void FaceArrays::move_into(MeshData& mesh, const Source& source) {
     for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
     std::erase_if(scalars_, [&](const Scalar& scalar) {
         const bool is_free = taken.insert(scalar.name).second;
-        if (!is_free) warn_of_left_out_scalars(source, scalar.name);
+        if (!is_free) warn_of_taken_name(source, scalar.name);
         return !is_free;
     });
     const bool has_labels = mesh.L.empty() && L_.size();
     if (L_.size() && !has_labels)
-        log_warning(
-            fmt::format("{}: the labels of the faces are left out: the vertices have labels of their own",
-                        source.path.string()));
+        warn_of_left_out_values(source, "the labels", "the vertices have labels of their own");
     if (!has_labels && scalars_.empty()) return;
     tell_faces_from_vertices(mesh);
     const auto of_triangles = [&](auto& values) {
@@ -328,6 +329,13 @@ void FaceArrays::move_into(MeshData& mesh, const Source& source) {
         warn_of_lost(source, scalar.name, scalar.rounding.get());
         mesh.scalars.push_back({scalar.name, of_triangles(scalar.values)});
     }
+}
+
+void FaceArrays::leave_out(const Source& source, std::string_view why) const {
+    if (L_.size()) warn_of_left_out_values(source, "the labels", why);
+    for (const Scalar& scalar : scalars_)
+        if (scalar.values.size())
+            warn_of_left_out_values(source, fmt::format("the scalars '{}'", scalar.name), why);
 }
 
 bool is_known_field(std::string_view name) {

@@ -87,6 +87,12 @@ class VertexArrays {
     std::vector<Scalar> scalars_;
 };
 
+/// Warns that values of a file's faces are left out, such as "the labels", and says why.
+void warn_of_left_out_values(const Source& source, std::string_view values, std::string_view why);
+
+/// The same of scalars that have the name of others.
+void warn_of_taken_name(const Source& source, const std::string& name);
+
 /// Colours, labels and scalars of a file's faces.
 class FaceArrays {
   public:
@@ -102,6 +108,9 @@ class FaceArrays {
     /// warning. Where they would pass for values of the vertices, a vertex is added
     /// (tell_faces_from_vertices).
     void move_into(MeshData& mesh, const Source& source);
+
+    /// Warns of labels and scalars, which are left out.
+    void leave_out(const Source& source, std::string_view why) const;
 
   private:
     struct Scalar {

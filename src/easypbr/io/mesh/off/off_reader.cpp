@@ -12,6 +12,7 @@
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/attributes.h"
 #include "easypbr/io/tables/element_table.h"
+#include "easypbr/io/tables/vertex_arrays.h"
 #include "easypbr/scene/color_range.h"
 
 namespace easypbr::io {
@@ -220,9 +221,7 @@ class OffReader {
     void color_faces(MeshData& mesh) {
         if (face_colors_.rows() == 0 || faces_.value_count() == 0) return;
         if (!mesh.C.empty()) {
-            log_warning(fmt::format(
-                "{}: the colours of the faces are left out: the vertices have colours of their own",
-                source_.path.string()));
+            warn_of_left_out_values(source_, "the colours", "the vertices have colours of their own");
             return;
         }
         normalize_colors(face_colors_);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
@@ -58,7 +57,10 @@ class PlyReader {
         make_mesh();
         add_materials();
         set_front();
-        if (strip_triangles_.empty()) face_values_.move_into(mesh_, source_);
+        if (strip_triangles_.empty())
+            face_values_.move_into(mesh_, source_);
+        else
+            face_values_.leave_out(source_, beside_strips);
         return std::move(mesh_);
     }
 
@@ -214,9 +216,9 @@ class PlyReader {
         const ArrayXf::Dense C = face_values_.take_colors();
         if (C.rows() == 0 || faces_.value_count() == 0) return;
         if (!mesh_.C.empty() || strip_triangles_.size()) {
-            log_warning(fmt::format("{}: the colours of the faces are left out: {}", source_.path.string(),
-                                    mesh_.C.empty() ? "there are triangle strips beside them"
-                                                    : "the vertices have colours of their own"));
+            warn_of_left_out_values(
+                source_, "the colours",
+                mesh_.C.empty() ? beside_strips : "the vertices have colours of their own");
             return;
         }
         const CornerSplit split = color_vertices_by_faces(C, faces_, mesh_);
@@ -260,11 +262,16 @@ class PlyReader {
             if (material.base_color_texture) material.base_color = Vec3::Ones();
             mesh_.materials.push_back(std::move(material));
         }
-        if (texture_number_.empty() || strip_triangles_.size()) return;
+        if (texture_number_.empty()) return;
+        if (strip_triangles_.size())
+            return warn_of_left_out_values(source_, "the texture numbers", beside_strips);
         const int32_t last = int32_t(mesh_.materials.size()) - 1;
         for (int32_t& number : texture_number_) number = std::clamp(number, 0, last);
         assign_materials(texture_number_, mesh_);
     }
+
+    /// Why values of faces are left out: triangles of strips have none.
+    static constexpr const char* beside_strips = "there are triangle strips beside them";
 
     const Source& source_;
     const PlyHeader header_;
