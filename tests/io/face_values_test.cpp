@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "io/npy_builder.h"
 #include "io/ply_builder.h"
 
 namespace easypbr::face_values_test {
@@ -69,6 +71,23 @@ TEST(Ply, NamesValuesOfFacesBesideStrips) {
         std::erase_if(alone.warnings, is_of_textures);
         EXPECT_EQ(alone.warnings, Texts());
     }
+}
+
+// "scalar_" is no part of a name, as in PLY. Two triangles; four values are those of the points.
+TEST(Npz, NamesScalarsOfFacesThatThePointsHaveToo) {
+    const auto floats = [](std::initializer_list<float> list) { return Bytes().add_all(list).str(); };
+    const auto [mesh, warnings] =
+        read(io::read_npz,
+             npz({{"V.npy", npy("'<f4'", "(4, 3)", floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}))},
+                  {"F.npy", npy("'<i4'", "(2, 3)", Bytes().add_all<int32_t>({0, 1, 2, 1, 3, 2}).str())},
+                  {"heat.npy", npy("'<f4'", "(4,)", floats({1, 2, 3, 4}))},
+                  {"scalar_heat.npy", npy("'<f4'", "(2,)", floats({8, 9}))},
+                  {"area.npy", npy("'<f4'", "(2,)", floats({0.5f, 0.25f}))}}));
+    EXPECT_EQ(warnings,
+              (Texts{"test: the scalars 'heat' of the faces are left out: there are others of that name"}));
+    EXPECT_EQ(Vec4(scalar_named(mesh, "heat").values), Vec4(1, 2, 3, 4));
+    EXPECT_EQ(Vec2(scalar_named(mesh, "area").values), Vec2(0.5f, 0.25f));
+    EXPECT_EQ(mesh.scalars.size(), 2u);
 }
 
 }  // namespace easypbr::face_values_test

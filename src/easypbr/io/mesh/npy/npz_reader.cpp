@@ -243,13 +243,18 @@ class NpzReader {
     }
 
     void add_face_values() {
-        if (face_values_.empty()) return;
-        tell_faces_from_vertices(mesh_);
         for (const NamedArray* named : face_values_) {
-            if (is_called(*named, npz_labels) && mesh_.L.empty())
+            const bool are_labels = is_called(*named, npz_labels) && mesh_.L.empty();
+            const std::string name = scalar_name(named->name);
+            const auto has_name = [&](const ScalarArray& scalar) { return scalar.name == name; };
+            if (!are_labels && std::ranges::any_of(mesh_.scalars, has_name)) {
+                warn_of_taken_name(source_, name);
+                continue;
+            }
+            tell_faces_from_vertices(mesh_);
+            if (are_labels)
                 mesh_.L = of_triangles(values_of<Integers>(*named));
-            else if (const std::string name = scalar_name(named->name); std::ranges::none_of(
-                         mesh_.scalars, [&](const ScalarArray& s) { return s.name == name; }))
+            else
                 mesh_.scalars.push_back({name, of_triangles(scalars_of(*named, name))});
         }
     }
