@@ -26,8 +26,8 @@ constexpr bool has_misfits(ScalarType type) {
     return type > ScalarType::int32;
 }
 
-/// Counts what float32 or an integer makes of the values of a block. `values`: room for them, kept from block
-/// to block.
+/// Counts what float32 or an integer makes of the values of a block of scalars, one in each row: columns of
+/// lists ask for no counts. `values`: room for them, kept from block to block.
 void count_block(ValueBlock block, ScalarType type, bool swap, const Column& column, ColumnCounts& counts,
                  std::vector<double>& values) {
     const bool are_integers = column.integers && has_misfits(type);
