@@ -265,6 +265,22 @@ def test_defaults_by_pattern(render, configured, sphere, box, tmp_path):
         assert (tmp_path / f"batch-{name}.png").read_bytes() == (tmp_path / f"{name}.png").read_bytes()
 
 
+@pytest.mark.parametrize("file, fits", [
+    ("s1/t.obj", True), ("./s1/t.obj", True), ("s2/../s1/t.obj", True), ("s1//t.obj", True), ("s2/./.././s1/t.obj", True),
+    ("s1/../s2/t.obj", False), ("s2/t.obj", False), ("link/t.obj", False), ("s1/link.obj", True),
+])  # fmt: skip
+def test_patterns_of_paths_fit_however_a_path_is_written(render, configured, sphere, tmp_path, file, fits):
+    """Links are not followed: link is s1, and s1/link.obj is s2/t.obj."""
+    for folder in ("s1", "s2"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "t.obj").write_bytes(sphere.read_bytes())
+    (tmp_path / "link").symlink_to("s1")
+    (tmp_path / "s1/link.obj").symlink_to("../s2/t.obj")
+    configured([{"files": f"{tmp_path}/s1/*", "settings": {"background.color": "#ff0000"}}])
+    render(file, "-o", "out.png")
+    assert (corner(tmp_path / "out.png") == (255, 0, 0)) == fits
+
+
 def test_options_and_settings_files_come_after_it(easypbr, render, configured, sphere, tmp_path):
     render(sphere, "-o", "plain.png", "--save-settings", "plain.json")
     configured([{"settings": {"background.color": "#ff0000"}}])

@@ -53,8 +53,8 @@ bool fits(const std::string& patterns, const std::string& file) {
         if (begin == pattern.npos) continue;
         pattern = pattern.substr(begin, end - begin + 1);
         const bool whole = pattern.find('/') != pattern.npos;
-        const std::string name = whole ? fs::absolute(file).string() : fs::path(file).filename().string();
-        if (fnmatch(pattern.c_str(), name.c_str(), 0) == 0) return true;
+        const fs::path path = whole ? fs::absolute(file).lexically_normal() : fs::path(file).filename();
+        if (fnmatch(pattern.c_str(), path.c_str(), 0) == 0) return true;
     }
     return false;
 }
