@@ -3,7 +3,15 @@ find_package(PkgConfig REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 # The layout of what has vectors of Eigen, a part of the library's ABI, would depend on -march and EIGEN_DONT_VECTORIZE.
 # This is Eigen's own value for the instruction sets without AVX; include/easypbr/core/math.h refuses others.
-set(EASYPBR_EIGEN_DEFINITION EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+set(EASYPBR_LAYOUT_DEFINITIONS EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+# So does that of containers on libstdc++'s debug mode: where the flags ask for it, programs have it too.
+# include/easypbr/core/error.h refuses it in others.
+get_directory_property(directory_definitions COMPILE_DEFINITIONS)
+get_directory_property(directory_options COMPILE_OPTIONS)
+string(TOUPPER "CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}" flags_of_type)
+if("${CMAKE_CXX_FLAGS} ${${flags_of_type}} ${directory_definitions} ${directory_options}" MATCHES "_GLIBCXX_DEBUG([ ;=]|$)")
+  list(APPEND EASYPBR_LAYOUT_DEFINITIONS _GLIBCXX_DEBUG EASYPBR_GLIBCXX_DEBUG)
+endif()
 find_package(fmt REQUIRED)
 find_package(TBB REQUIRED)
 find_package(nlohmann_json REQUIRED)
@@ -38,7 +46,7 @@ find_file(EASYPBR_FONT DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truet
 add_library(easypbr_dependencies INTERFACE)
 target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
   meshoptimizer::meshoptimizer nanoflann::nanoflann embree PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG PkgConfig::WEBP tinyexr::tinyexr ZLIB::ZLIB ${ZSTD_LIBRARY} yaml-cpp ${CMAKE_DL_LIBS})
-target_compile_definitions(easypbr_dependencies INTERFACE ${EASYPBR_EIGEN_DEFINITION})
+target_compile_definitions(easypbr_dependencies INTERFACE ${EASYPBR_LAYOUT_DEFINITIONS})
 # What the room gui alone uses.
 add_library(easypbr_gui_dependencies INTERFACE)
 target_link_libraries(easypbr_gui_dependencies INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})

@@ -23,6 +23,8 @@ install(FILES ${PROJECT_BINARY_DIR}/easypbrConfig.cmake ${PROJECT_BINARY_DIR}/ea
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT development)
 # For builds without CMake. The prefix is found from the place of the file, so that it may move.
 file(RELATIVE_PATH EASYPBR_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+list(TRANSFORM EASYPBR_LAYOUT_DEFINITIONS PREPEND -D OUTPUT_VARIABLE layout_flags)
+list(JOIN layout_flags " " layout_flags)
 configure_file(cmake/easypbr.pc.in ${PROJECT_BINARY_DIR}/easypbr.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/easypbr.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 

@@ -91,15 +91,36 @@ def test_another_layout_of_eigen_is_an_error_that_names_the_way_out(include, tmp
     run(*command, advice, cwd=tmp_path)
 
 
-def test_matrices_by_rows_are_an_error_that_names_the_way_out(include, tmp_path):
-    """Mat3, Mat4 and poses of the library are by columns: those that cross over would be transposed."""
+@pytest.mark.parametrize("flag, message", [
+    ("-DEIGEN_DEFAULT_TO_ROW_MAJOR", "compile without EIGEN_DEFAULT_TO_ROW_MAJOR"),
+    ("-DEIGEN_DEFAULT_DENSE_INDEX_TYPE=int", "compile without EIGEN_DEFAULT_DENSE_INDEX_TYPE"),
+    ("-D_GLIBCXX_DEBUG", "compile without _GLIBCXX_DEBUG"),
+])  # fmt: skip
+def test_other_layouts_are_errors_that_name_the_way_out(include, tmp_path, flag, message):
+    """Mat3, Mat4 and poses would be transposed; arrays, and types with a std::vector, would have other sizes."""
     (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
-    command = [COMPILER, *FLAGS, "-isystem", eigen(), "-I", include, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16"]
-    run(*command, "array.cpp", cwd=tmp_path)
-    done = subprocess.run([*command, "-DEIGEN_DEFAULT_TO_ROW_MAJOR", "array.cpp"], cwd=tmp_path, capture_output=True,
-                          text=True)
+    command = [COMPILER, *FLAGS, "-isystem", eigen(), "-I", include, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16", "array.cpp"]
+    run(*command, cwd=tmp_path)
+    done = subprocess.run([*command, flag], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode != 0
-    assert "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR" in done.stderr
+    assert f"EasyPBR: {message}" in done.stderr
+
+
+def test_every_header_with_a_vector_refuses_the_debug_mode_of_the_standard_library(include, tmp_path):
+    for name in headers(include):
+        if "std::vector" not in (include / name).read_text():
+            continue
+        (tmp_path / "one.cpp").write_text(f"#include <{name}>\n")
+        command = [COMPILER, "-std=c++20", "-E", "-isystem", eigen(), "-I", include, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16",
+                   "-D_GLIBCXX_DEBUG", "one.cpp"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        assert "EasyPBR: compile without _GLIBCXX_DEBUG" in done.stderr, name
+
+
+def test_a_library_in_the_debug_mode_of_the_standard_library_asks_programs_for_it(include, tmp_path):
+    """Both are defined by the CMake target then: the headers take them."""
+    (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
+    compile_text(include, tmp_path, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16", "-D_GLIBCXX_DEBUG", "-DEASYPBR_GLIBCXX_DEBUG", "array.cpp")
 
 
 def test_comments_name_no_header_that_is_not_installed(include):

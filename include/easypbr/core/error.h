@@ -4,6 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+// Containers of libstdc++'s debug mode have another layout, and so have types with a std::vector. All headers
+// that have one include this. The CMake target and easypbr.pc of a library in this mode define both.
+#if defined(_GLIBCXX_DEBUG) && !defined(EASYPBR_GLIBCXX_DEBUG)
+#error "EasyPBR: compile without _GLIBCXX_DEBUG, as the library is; _GLIBCXX_ASSERTIONS may be defined"
+#endif
+
 namespace easypbr {
 
 /// Base of every exception that the library throws.

@@ -3,6 +3,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <type_traits>
+
+#include "easypbr/core/error.h"
 
 // How matrices and vectors of fixed size are aligned, and so the layout of all that has them, would depend on
 // the compiler's flags: -mavx, -march, EIGEN_DONT_VECTORIZE. The CMake target and easypbr.pc define it.
@@ -15,6 +19,10 @@
 #ifdef EIGEN_DEFAULT_TO_ROW_MAJOR
 #error "EasyPBR: compile without EIGEN_DEFAULT_TO_ROW_MAJOR; types may name Eigen::RowMajor"
 #endif
+
+// Arrays hold their sizes in it.
+static_assert(std::is_same_v<Eigen::Index, std::ptrdiff_t>,
+              "EasyPBR: compile without EIGEN_DEFAULT_DENSE_INDEX_TYPE, as the library is");
 
 namespace easypbr {
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/core/error.h"
+
 namespace easypbr {
 
 /// What a picture's values are.

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "easypbr/core/error.h"
+
 namespace easypbr {
 
 class Animations;

@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "easypbr/core/error.h"
+
 namespace easypbr {
 
 struct Settings;
