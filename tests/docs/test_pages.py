@@ -56,6 +56,14 @@ def test_defaults_are_what_the_command_line_takes_and_has(reference, tmp_path):
     assert (tmp_path / "told.png").read_bytes() == (tmp_path / "plain.png").read_bytes()
 
 
+def test_functions_of_cpp_on_the_page_of_extensions_are_in_the_installed_headers():
+    """Of the library's classes alone: the classes of the renderer are private."""
+    page = FENCE.sub(lambda block: "" if block[1] == "python" else block[2], (ROOT / "docs/extending.md").read_text())
+    names = set(re.findall(r"(?:\.|->|::)([a-z]\w*)\(", page)) | set(re.findall(r"app::(\w+)", page))
+    headers = "\n".join(path.read_text() for path in (ROOT / "include").rglob("*.h"))
+    assert {"set", "revision", "ShaderPass"} <= names <= set(re.findall(r"\w+", headers))
+
+
 def test_every_public_name_is_in_the_reference(reference):
     headings = re.findall(r"^### (\w+)$", (reference / "python.md").read_text(), re.MULTILINE)
     public = [name for name in easypbr.__all__ if name not in ("errors", "shapes")]
