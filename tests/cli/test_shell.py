@@ -57,7 +57,18 @@ def bash(tmp_path_factory):
     (["easypbr", "render", "--preset", ""], ["dark", "flat", "paper", "studio"]),
     (["easypbr", "dataset", "--writers", "co"], ["coco", "colmap"]),
     (["easypbr", "dataset", "--writers", "coco,yolo,co"], ["coco,yolo,coco", "coco,yolo,colmap"]),
+    (["easypbr", "render", "--tonemap", "=", "a"], ["aces", "agx"]),
+    (["easypbr", "render", "--bit-depth", "="], ["8", "16"]),
+    (["easypbr", "--device", "=", "g"], ["gl"]),
+    (["easypbr", "--device", "="], ["auto", "gl", "cpu"]),
+    (["easypbr", "render", "a.ply", "--set", "=", "camera.fov"], ["camera.fov_y_deg="]),
+    (["easypbr", "render", "--texture", "=", "nor"], ["normal="]),
+    (["easypbr", "render", "--layers", "=", "depth,normal_w"], ["depth,normal_world"]),
+    (["easypbr", "render", "--set=camera.fov"], ["--set=camera.fov_y_deg="]),  # "=" is not in COMP_WORDBREAKS
+    (["easypbr", "render", "--layers=depth,normal_w"], ["--layers=depth,normal_world"]),
     (["easypbr", "render", "dro"], []),  # bash completes files
+    (["easypbr", "render", "--output", "=", "out"], []),
+    (["easypbr", "render", "--texture", "base_color", "=", "t"], []),
     (["easypbr", "render", "-o", "out"], []),
 ])  # fmt: skip
 def test_bash_completes(bash, words, expected):
@@ -100,8 +111,15 @@ def test_bash_answers_at_once(bash, tmp_path):
     ("render --layers color,dep", ["color,depth"]),
     ("dataset --writers coco,b", ["coco,bop"]),
     ("info render --j", ["--json"]),
+    ("render --tonemap=a", ["--tonemap=aces", "--tonemap=agx"]),
+    ("render --set=camera.fov", ["--set=camera.fov_y_deg="]),
+    ("render --output=pict", ["--output=picture.png"]),
+    ("render --texture nor", ["normal="]),
+    ("render --texture base_color=pict", ["base_color=picture.png"]),
+    ("render --texture=base_color=pict", ["--texture=base_color=picture.png"]),
 ])  # fmt: skip
 def test_fish_completes(easypbr, tmp_path, line, expected):
+    (tmp_path / "picture.png").touch()
     (tmp_path / "easypbr.fish").write_text(easypbr("completion", "fish").stdout)
     home = {**os.environ, "HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path)}
     code = f"source easypbr.fish; complete -C 'easypbr {line}'"
@@ -113,6 +131,7 @@ def test_fish_completes(easypbr, tmp_path, line, expected):
 def zsh(tmp_path_factory):
     """What zsh makes of a line when Tab is pressed at its end; Ctrl-T is a Tab that writes the line to a file."""
     folder = tmp_path_factory.mktemp("zsh")
+    (folder / "picture.png").touch()
     (folder / "_easypbr").write_bytes(subprocess.run([BINARY, "completion", "zsh"], capture_output=True, check=True).stdout)
     process, terminal = pty.fork()
     if process == 0:
@@ -146,14 +165,25 @@ def zsh(tmp_path_factory):
 
 @pytest.mark.parametrize("line, expected", [
     ("rend", "render"),
-    ("--dev", "--device"),
+    ("--dev", "--device="),  # zsh takes the "=" away again where a space follows
     ("--device c", "--device cpu"),
+    ("--device=c", "--device=cpu"),
     ("--device cpu rend", "--device cpu render"),
-    ("--device cpu render --tonem", "--device cpu render --tonemap"),
-    ("render --dev", "render --device"),
+    ("--device=cpu rend", "--device=cpu render"),
+    ("--device cpu render --tonem", "--device cpu render --tonemap="),
+    ("render --dev", "render --device="),
     ("render --device c", "render --device cpu"),
     ("render --tonemap ac", "render --tonemap aces"),
     ("render --layers color,dep", "render --layers color,depth,"),
+    ("render --tonemap=ac", "render --tonemap=aces"),
+    ("render --layers=color,dep", "render --layers=color,depth,"),
+    ("render --set camera.fov", "render --set camera.fov_y_deg="),
+    ("render --set=camera.fov", "render --set=camera.fov_y_deg="),
+    ("render --output pict", "render --output picture.png"),
+    ("render --output=pict", "render --output=picture.png"),
+    ("render -o pict", "render -o picture.png"),
+    ("render --texture base_color=pict", "render --texture base_color=picture.png"),
+    ("render --texture=base_color=pict", "render --texture=base_color=picture.png"),
     ("dataset --writers coco,b", "dataset --writers coco,bop,"),
     ("completion z", "completion zsh"),
 ])  # fmt: skip
@@ -168,7 +198,7 @@ def test_zsh_takes_it(easypbr, tmp_path):
     done = subprocess.run(["zsh", "-f", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert (done.stdout.strip(), done.stderr) == ("_easypbr", "")
     text = (tmp_path / "_easypbr").read_text()
-    assert "--tonemap[Tone mapping operator.]:NAME:(aces reinhard agx neutral none)" in text
+    assert "--tonemap=[Tone mapping operator.]:NAME:(aces reinhard agx neutral none)" in text
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

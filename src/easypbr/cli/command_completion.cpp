@@ -121,6 +121,14 @@ _easypbr() {{
     *) command=${{COMP_WORDS[i]}}; break ;;
     esac
   done
+  # --option=value: bash parts words at "=" if COMP_WORDBREAKS has it.
+  if [ "$current" = "=" ]; then
+    current=
+  elif [ "$previous" = "=" ]; then
+    previous=${{COMP_WORDS[COMP_CWORD-2]}}
+  elif [[ $current == --*=* ]]; then
+    previous=${{current%%=*}} before=${{current%%=*}}=
+  fi
   case "$command $previous" in
 {}    *) case "$command" in
       '') words='{} {}' ;;
@@ -140,6 +148,11 @@ complete -o default -F _easypbr easypbr
         option_words(program.options), options);
 }
 
+/// Whether the words are names, which "=" and a value follow.
+bool goes_on(const OptionRow& option) {
+    return !option.choices.empty() && option.choices.front().ends_with('=');
+}
+
 /// Within the brackets and colons of zsh's _arguments.
 std::string zsh_text(const std::string& text) {
     std::string escaped = quoted(text);
@@ -152,6 +165,7 @@ std::string zsh_text(const std::string& text) {
 std::string zsh_action(const OptionRow& option) {
     const std::string words = zsh_text(joined(option.choices));
     if (option.is_list) return "_sequence compadd - " + words;
+    if (goes_on(option)) return "_easypbr_pair - " + words;
     if (!words.empty()) return fmt::format("({})", words);
     return option.takes_file ? "_files" : " ";
 }
@@ -164,8 +178,11 @@ std::string zsh_options(const std::vector<OptionRow>& options, std::string_view 
             option.placeholder.empty()
                 ? ""
                 : fmt::format(":{}:{}", zsh_text(option.placeholder), zsh_action(option));
-        for (const std::string& name : with_dashes(option))
-            text += fmt::format("        '*{}[{}]{}'{}\n", name, zsh_text(option.help), value, end);
+        for (const std::string& name : with_dashes(option)) {
+            // With it the value may also follow in the same word.
+            const std::string_view equals = !value.empty() && name.starts_with("--") ? "=" : "";
+            text += fmt::format("        '*{}{}[{}]{}'{}\n", name, equals, zsh_text(option.help), value, end);
+        }
     }
     return text;
 }
@@ -188,6 +205,10 @@ std::string zsh_completion(const std::vector<CommandRow>& table) {
     }
     return fmt::format(R"(#compdef easypbr
 # Completion of easypbr for zsh, made from its table of options: easypbr completion zsh
+# NAME=VALUE, where the value may be a file.
+_easypbr_pair() {{
+  if compset -P 1 '*='; then _files; else compadd -S '' "$@"; fi
+}}
 _easypbr() {{
   local -a commands program
   commands=(
@@ -231,6 +252,7 @@ std::string fish_text(const std::string& text) {
 std::string fish_value(const OptionRow& option) {
     const std::string words = fish_text(joined(option.choices));
     if (option.is_list) return fmt::format(" -x -a '(__fish_append , {})'", words);
+    if (goes_on(option)) return fmt::format(" -x -a '(__easypbr_pair {})'", words);
     if (!words.empty()) return fmt::format(" -x -a '{}'", words);
     return option.placeholder.empty() ? "" : option.takes_file ? " -r -F" : " -x";
 }
@@ -247,7 +269,8 @@ std::string fish_options(const std::vector<OptionRow>& options, const std::strin
     return text;
 }
 
-/// Functions that tell which command is on the line; without an argument, __easypbr_is tells that none is.
+/// Functions that tell which command is on the line, and that complete pairs. Without an argument,
+/// __easypbr_is tells that no command is.
 std::string fish_functions(const CommandRow& program) {
     return fmt::format(R"(function __easypbr_command
     set -l is_value 0
@@ -265,6 +288,15 @@ end
 function __easypbr_is
     set -l command (__easypbr_command)
     test "$command" = "$argv"
+end
+# NAME=VALUE, where the value may be a file.
+function __easypbr_pair
+    set -l typed (string replace -r -- '^--[^=]*=' '' (commandline -ct))
+    if set -l name (string match -r -- '^[^=]*=' $typed)
+        __fish_complete_path (string replace -- $name '' $typed) | string replace -r -- '^' $name
+    else
+        printf '%s\n' $argv
+    end
 end
 )",
                        joined(value_options(program)));
