@@ -367,6 +367,9 @@ def test_mistakes_name_the_file_and_the_entry(render, configured, sphere, entrie
     ("--scalar-bar", "it is called --colorbar"),
     ("--bg-color", "it is called --background"),
     ("--volume", "volumes are not drawn"),
+    ("--mesh-show-back-face", "it is called --set style.two_sided=VALUE"),
+    ("--window-name", "windows are titled by the files that they show"),
+    ("--film-transparent", "it is called --background"),
     ("--rougness", "did you mean '--roughness'"),
 ])  # fmt: skip
 def test_words_of_other_programs_are_known(render, sphere, option, hint):

@@ -84,6 +84,14 @@ def test_pyvista_s_words_are_known():
     assert [word for word in words if _easypbr.synonym(word) is None] == []
 
 
+def test_words_of_open3d_polyscope_and_blender_are_known():
+    """Of draw_geometries() and draw(), of register_surface_mesh() and add_scalar_quantity(), of scene.render."""
+    settings = {"mesh_show_back_face": "style.two_sided", "show_skybox": "background.mode", "smooth_shade": "style.flat",
+                "engine": "path.enabled", "film_transparent": "background.mode"}
+    assert {word: getattr(_easypbr.synonym(word), "setting", None) for word in settings} == settings
+    assert [word for word in ("window_name", "front", "datatype") if _easypbr.synonym(word) is None] == []
+
+
 def test_words_of_images_are_not_taken_for_other_settings(cone):
     """`width` is the last part of outline.width alone, and `height` of ground.height."""
     for word in ("width", "height", "resolution"):
