@@ -120,7 +120,8 @@ def test_every_header_with_a_vector_refuses_the_debug_mode_of_the_standard_libra
 def test_a_library_in_the_debug_mode_of_the_standard_library_asks_programs_for_it(include, tmp_path):
     """Both are defined by the CMake target then: the headers take them."""
     (tmp_path / "array.cpp").write_text("#include <easypbr/scene/array.h>\n")
-    compile_text(include, tmp_path, "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16", "-D_GLIBCXX_DEBUG", "-DEASYPBR_GLIBCXX_DEBUG", "array.cpp")
+    flags = ["-DEIGEN_MAX_STATIC_ALIGN_BYTES=16", "-D_GLIBCXX_DEBUG", "-DEASYPBR_GLIBCXX_DEBUG"]
+    compile_text(include, tmp_path, *flags, "array.cpp")
 
 
 def test_comments_name_no_header_that_is_not_installed(include):
