@@ -257,15 +257,6 @@ def test_scenes_of_trimesh(ball, renderer):
     np.testing.assert_array_equal(scene.get_pose(node(scene, "moved")), at(0.5, 0, 0))
 
 
-@pytest.mark.parametrize("camera, point", [(CAMERAS["perspective"], [0.3, 0.2, -2.0]), (CAMERAS["intrinsics"], [0.3, 0.2, -2.0])])
-def test_projection_matrices_agree_with_the_pixels_that_are_drawn(camera, point):
-    P = camera.get_projection_matrix(80, 60)
-    x, y, _, w = P @ [*point, 1]
-    fx, fy, cx, cy = camera.intrinsics(80, 60)
-    assert (x / w + 1) * 40 - 0.5 == pytest.approx(fx * point[0] / -point[2] + cx)
-    assert (1 - y / w) * 30 - 0.5 == pytest.approx(-fy * point[1] / -point[2] + cy)
-
-
 def test_mistakes_are_told(scene, renderer, ball):
     with pytest.raises(ValueError, match="the scene has no camera"):
         renderer.render(scene)

@@ -22,6 +22,20 @@ class RenderFlags:
     SEG = 8192
 
 
+class TextAlign:
+    """Where a caption's position lies in it."""
+
+    CENTER = 0
+    CENTER_LEFT = 1
+    CENTER_RIGHT = 2
+    BOTTOM_LEFT = 3
+    BOTTOM_RIGHT = 4
+    BOTTOM_CENTER = 5
+    TOP_LEFT = 6
+    TOP_RIGHT = 7
+    TOP_CENTER = 8
+
+
 class GLTF:
     """glTF's (and OpenGL's) numbers."""
 
@@ -45,3 +59,7 @@ class GLTF:
 
 DEFAULT_Z_NEAR = 0.05
 DEFAULT_Z_FAR = 100.0
+DEFAULT_SCENE_SCALE = 2.0
+MAX_N_LIGHTS = 4
+SHADOW_TEX_SZ = 2048
+TEXT_PADDING = 20

@@ -9,15 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _easypbr
-from ...errors import ArgumentError
 from ...scene import Scene as OwnScene
 from ...viewer import Viewer as OwnViewer
-from .cameras import Camera, OrthographicCamera
 from .constants import RenderFlags
-from .lights import DirectionalLight, PointLight, SpotLight
+from .light import DirectionalLight, PointLight, SpotLight
 from .lines import segments_of
 from .mesh import Mesh, Primitive
 from .node import Node
+from .projection import Projection
 from .scene import Scene
 
 _STUDIO = ("key", "fill", "rim")
@@ -198,21 +197,10 @@ class Drawing:
         for name, value in values.items():
             settings[name] = value
 
-    def set_camera(self, camera: Camera, pose: NDArray[Any], width: int, height: int) -> None:
-        """Draws from a camera with this pose."""
-        intrinsics = camera.intrinsics(width, height)
-        if intrinsics is None:
-            if not isinstance(camera, OrthographicCamera):
-                raise ArgumentError(f"a {type(camera).__name__}: expected a camera with intrinsics")
-            own = _easypbr.Camera.from_opengl(pose)
-            own.projection, own.ortho_height = "orthographic", 2 * camera.ymag
-        else:
-            fx, fy, cx, cy = intrinsics
-            K = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
-            own = _easypbr.Camera.from_opencv(K, pose, (width, height), axes="opengl")
-        own.near = camera.znear
-        self.view.camera = own
-        self.view.settings["camera.near"] = camera.znear
+    def set_camera(self, projection: Projection) -> None:
+        """Draws with a projection."""
+        self.view.camera = projection.own
+        self.view.settings["camera.near"] = projection.own.near
 
     def close(self) -> None:
         """Forgets everything, the context too."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _easypbr
-from .cameras import Camera, OrthographicCamera
+from .projection import Projection
 
 
 def segments_of(mesh: "_easypbr.Mesh") -> NDArray[Any]:
@@ -17,19 +17,20 @@ def segments_of(mesh: "_easypbr.Mesh") -> NDArray[Any]:
     return np.unique(np.sort(np.concatenate([F[:, :2], F[:, 1:], F[:, ::2]]), axis=1), axis=0)
 
 
-def depths_of_lines(ends: NDArray[Any], camera: Camera, pose: NDArray[Any], width: int, height: int) -> NDArray[Any]:
-    """Height x width float32: metres along the optical axis of the nearest line, infinite where there is none. `ends`: k x 2 x 3
-    in the world."""
+def depths_of_lines(ends: NDArray[Any], projection: Projection) -> NDArray[Any]:
+    """Height x width float32: metres along the optical axis, from EasyPBR's camera, of the nearest line, infinite where there is
+    none. `ends`: k x 2 x 3 in the world."""
+    width, height = projection.size
     depth = np.full((height, width), np.inf, np.float32)
-    to_camera = np.linalg.inv(pose)
-    places = _clipped(ends @ to_camera[:3, :3].T + to_camera[:3, 3], camera)
+    to_camera = np.linalg.inv(projection.pose)
+    places = _clipped(ends @ to_camera[:3, :3].T + to_camera[:3, 3], projection)
     if len(places) == 0:
         return depth
-    clip = np.concatenate([places, np.ones((len(places), 2, 1))], axis=2) @ camera.get_projection_matrix(width, height).T
+    clip = np.concatenate([places, np.ones((len(places), 2, 1))], axis=2) @ projection.matrix.T
     pixels = (clip[:, :, :2] / clip[:, :, 3:] * (1, -1) + 1) / 2 * (width, height)
     # What changes evenly along a line of the image: the depth of parallel rays, its inverse of others.
-    is_parallel = isinstance(camera, OrthographicCamera)
-    even = -places[:, :, 2] if is_parallel else -1 / places[:, :, 2]
+    is_parallel = projection.is_parallel
+    even = projection.back - places[:, :, 2] if is_parallel else -1 / places[:, :, 2]
     # A pixel for each column that a line passes whose slope is below 1, for each row otherwise.
     for axis, is_steep in ((0, False), (1, True)):
         length = np.abs(pixels[:, 1] - pixels[:, 0])
@@ -45,9 +46,9 @@ def depths_of_lines(ends: NDArray[Any], camera: Camera, pose: NDArray[Any], widt
     return depth
 
 
-def _clipped(ends: NDArray[Any], camera: Camera) -> NDArray[Any]:
-    """The parts of lines, k x 2 x 3 in the camera's frame, that are between znear and zfar."""
-    for limit, sign in ((camera.znear, 1), (camera.zfar, -1)):
+def _clipped(ends: NDArray[Any], projection: Projection) -> NDArray[Any]:
+    """The parts of lines, k x 2 x 3 in the camera's frame, that are between the near and the far plane."""
+    for limit, sign in ((projection.near, 1), (projection.far, -1)):
         if limit is None:
             continue
         inside = sign * (-ends[:, :, 2] - limit)  # At least 0 within.

@@ -13,7 +13,7 @@ from ...errors import ArgumentError
 from .bounded import Bounded
 from .colors import colors, encoded
 from .constants import GLTF
-from .materials import Material, MetallicRoughnessMaterial
+from .material import Material, MetallicRoughnessMaterial
 
 
 def _floats(array: ArrayLike) -> NDArray[Any]:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ArgumentError
-from .cameras import Camera
-from .lights import Light
+from .camera import Camera
+from .light import Light
 from .mesh import Mesh
 
 

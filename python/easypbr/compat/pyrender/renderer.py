@@ -1,4 +1,4 @@
-"""OffscreenRenderer: images and depths of a scene."""
+"""Renderer and OffscreenRenderer: images and depths of a scene."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,12 +11,13 @@ from .constants import RenderFlags
 from .drawing import Drawing
 from .lines import depths_of_lines
 from .node import Node
+from .projection import Projection, projection_of
 from .scene import Scene
 
-__all__ = ["OffscreenRenderer", "RenderFlags"]
+__all__ = ["OffscreenRenderer", "RenderFlags", "Renderer"]
 
 
-class OffscreenRenderer:
+class Renderer:
     """Renders without a window. What was made of a scene is kept for the next image, as long as the renderer lives."""
 
     viewport_width: int
@@ -45,28 +46,31 @@ class OffscreenRenderer:
         size = (self.viewport_width, self.viewport_height)
         if not drawing.shown:
             return self._of_nothing(scene, flags)
-        drawing.set_camera(node.camera, scene.get_pose(node), *size)
+        projection = projection_of(node.camera, scene.get_pose(node), *size)
+        drawing.set_camera(projection)
         # As in pyrender, wireframes are solid where only depths or segments are drawn.
         is_solid = is_map or bool(flags & RenderFlags.DEPTH_ONLY)
-        found = drawing.layers(["depth", "object_id"] if is_map else ["depth"], size, is_solid)
+        layers = drawing.layers(["depth", "object_id"] if is_map else ["depth"], projection.drawn, is_solid)
+        found = {name: projection.picked(layer) for name, layer in layers.items()}
         seen = depth = found["depth"]
-        if node.camera.zfar is not None:
-            depth = np.where(depth <= node.camera.zfar, depth, np.float32(0))
+        if projection.far is not None:
+            depth = np.where(depth <= projection.far + projection.back, depth, np.float32(0))
         colors = dict(seg_node_map or {}) if is_map else None
         segments = None if colors is None else _segments(found["object_id"], depth, drawing, colors)
         for shown, ends in drawing.lines(is_solid):
-            of_lines = depths_of_lines(ends, node.camera, scene.get_pose(node), *size)
+            of_lines = depths_of_lines(ends, projection)
             is_front = of_lines < np.where(depth > 0, depth, np.inf)
             depth = np.where(is_front, of_lines, depth)
             if colors is not None and segments is not None:
                 segments[is_front] = _rgb(colors[shown])
+        metres = projection.depths(depth)
         if flags & RenderFlags.DEPTH_ONLY:
-            return depth
+            return metres
         if segments is not None:
-            return _with_alpha(segments, flags), depth
-        return self._colors(scene, flags, depth, seen), depth
+            return _with_alpha(segments, flags), metres
+        return self._colors(scene, flags, depth, seen, projection), metres
 
-    def _colors(self, scene: Scene, flags: int, depth: NDArray[Any], seen: NDArray[Any]) -> NDArray[Any]:
+    def _colors(self, scene: Scene, flags: int, depth: NDArray[Any], seen: NDArray[Any], projection: Projection) -> NDArray[Any]:
         """The image over the background, which is sRGB as it is given."""
         assert self._drawing is not None
         view = self._drawing.view
@@ -74,13 +78,13 @@ class OffscreenRenderer:
         if is_whole and not flags & RenderFlags.RGBA:
             view.settings["background.mode"] = "color"
             view.settings["background.color"] = [float(part) for part in np.clip(scene.bg_color[:3], 0, 1)]
-            picture = view.render((self.viewport_width, self.viewport_height))
+            picture = projection.picked(view.render(projection.drawn))
             color = np.empty((*picture.shape[:2], 3), np.uint8)
             for channel in range(3):  # Four times as fast as copying pixel by pixel.
                 color[:, :, channel] = picture[:, :, channel]
             return color
         view.settings["background.mode"] = "transparent"
-        picture = view.render((self.viewport_width, self.viewport_height)).astype(np.float32) / 255
+        picture = projection.picked(view.render(projection.drawn)).astype(np.float32) / 255
         alpha = picture[:, :, 3:] * ((depth > 0) | (seen == 0))[:, :, None]
         ground = scene.bg_color.astype(np.float32)
         color = picture[:, :, :3] * alpha + ground[:3] * (1 - alpha)
@@ -103,6 +107,10 @@ class OffscreenRenderer:
         if self._drawing is not None:
             self._drawing.close()
         self._drawing = None
+
+
+class OffscreenRenderer(Renderer):
+    """What scripts render with; a Renderer, which draws into no window here, either."""
 
 
 def _segments(object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, colors: "Mapping[Node, Any]") -> NDArray[Any]:

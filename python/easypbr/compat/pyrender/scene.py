@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ArgumentError
 from .bounded import Bounded
-from .cameras import Camera
+from .camera import Camera
 from .colors import color
-from .lights import DirectionalLight, Light, PointLight, SpotLight
+from .light import DirectionalLight, Light, PointLight, SpotLight
 from .mesh import Mesh
 from .node import Node
 

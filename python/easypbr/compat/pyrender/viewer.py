@@ -7,6 +7,7 @@ import numpy as np
 
 from .constants import RenderFlags
 from .drawing import Drawing
+from .projection import projection_of
 from .scene import Scene
 
 
@@ -53,7 +54,7 @@ class Viewer:
             view.settings["background.color"] = tuple(np.clip(self.scene.bg_color[:3], 0, 1))
             node = self.scene.main_camera_node
             if node is not None and node.camera is not None:
-                self._drawing.set_camera(node.camera, self.scene.get_pose(node), *view.settings.image.size)
+                self._drawing.set_camera(projection_of(node.camera, self.scene.get_pose(node), *view.settings.image.size))
 
     def start(self) -> None:
         """Opens the window. Raises ContextError without a display."""

@@ -11,7 +11,8 @@ from .constants import DEFAULT_Z_FAR, DEFAULT_Z_NEAR
 
 
 class Camera(ABC):
-    """What all cameras have: a name and the depths that they see, in metres."""
+    """What all cameras have: a name and the depths that they see, in metres. A class of your own says by
+    get_projection_matrix() what is drawn: parallel lines of sight, or a pinhole; its depths are what pyrender computes of znear and zfar."""
 
     znear: float
     zfar: float | None
@@ -23,7 +24,7 @@ class Camera(ABC):
 
     @abstractmethod
     def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> NDArray[Any]:
-        """OpenGL's 4 x 4 projection matrix for an image of this size."""
+        """OpenGL's 4 x 4 projection matrix for an image of this size: the camera is drawn by it."""
 
     def _depth_rows(self, P: NDArray[Any]) -> NDArray[Any]:
         """Completes the matrix of a perspective camera."""
@@ -32,10 +33,6 @@ class Camera(ABC):
         P[2][2] = -1.0 if far is None else (far + near) / (near - far)
         P[2][3] = -2.0 * near if far is None else 2 * far * near / (near - far)
         return P
-
-    @abstractmethod
-    def intrinsics(self, width: int, height: int) -> tuple[float, ...] | None:
-        """fx, fy, cx, cy of an image of this size, pixel centres at integers; None: an orthographic camera."""
 
 
 class PerspectiveCamera(Camera):
@@ -68,11 +65,6 @@ class PerspectiveCamera(Camera):
         P[0][0] = P[1][1] / self._aspect(width, height)
         return self._depth_rows(P)
 
-    def intrinsics(self, width: int, height: int) -> tuple[float, ...]:
-        fy = height / 2 / np.tan(self.yfov / 2)
-        fx = fy * width / height / self._aspect(width, height)
-        return fx, fy, width / 2 - 0.5, height / 2 - 0.5
-
 
 class OrthographicCamera(Camera):
     """`ymag`: half of the view volume's height in metres; its width follows from the image."""
@@ -100,9 +92,6 @@ class OrthographicCamera(Camera):
         P[2][3] = (far + near) / (near - far)
         P[3][3] = 1.0
         return P
-
-    def intrinsics(self, width: int, height: int) -> None:
-        return None
 
 
 class IntrinsicsCamera(Camera):
@@ -134,6 +123,3 @@ class IntrinsicsCamera(Camera):
         P[0][2] = 1 - 2 * self.cx / width
         P[1][2] = 2 * self.cy / height - 1
         return self._depth_rows(P)
-
-    def intrinsics(self, width: int, height: int) -> tuple[float, ...]:
-        return self.fx, self.fy, self.cx - 0.5, self.cy - 0.5

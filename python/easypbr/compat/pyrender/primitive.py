@@ -1,0 +1,5 @@
+"""pyrender's module of this name."""
+
+from .mesh import Primitive
+
+__all__ = ["Primitive"]
