@@ -172,3 +172,51 @@ def test_modules_of_pyrender_are_there():
 
 
 # Poses.
+
+
+def rounded():
+    """A turn of 0.7 about (1, 2, 3) in JSON with three decimals: off by 5e-4."""
+    axis = np.array([1.0, 2, 3]) / np.sqrt(14)
+    cross = np.cross(np.eye(3), -axis)
+    pose = np.eye(4)
+    pose[:3, :3] = np.round(np.eye(3) + np.sin(0.7) * cross + (1 - np.cos(0.7)) * cross @ cross, 3)
+    return pose
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (2, 2, 2), (0.5, 1, 2)])
+@pytest.mark.parametrize("camera", [
+    pyrender.PerspectiveCamera(1.0, zfar=40.0), pyrender.IntrinsicsCamera(75, 70, 35, 27.3), WeakPerspectiveCamera((0.5, 0.7), (0, 0)),
+])  # fmt: skip
+def test_poses_of_cameras_may_have_a_scale_and_be_rounded(camera, scale):
+    """As in pyrender, whose view is the inverse of the pose, the scale counts: depths and planes are those of the scaled axes."""
+    pose = rounded() @ np.diag([*scale, 1.0])
+    depth = 0.3 if isinstance(camera, WeakPerspectiveCamera) else 2.0
+    points = (pose @ np.column_stack([[[0.1, 0.2], [-0.4, 0.3]], [[-depth], [-depth * 1.2]], np.ones((2, 1))])[:, :, None])[:, :3, 0]
+    for point in points:
+        found, expected = seen(camera, pose, point, (96, 72)), projected(camera, pose, point, (96, 72))
+        np.testing.assert_allclose(found[:2], expected[:2], atol=0.75)
+        # Rounding shears the axes by up to 1e-3, which is left out.
+        assert found[2] == pytest.approx(expected[2], rel=2e-3)
+
+
+def test_depths_of_an_orthographic_camera_are_divided_by_the_scale():
+    pose = np.diag([2.0, 2, 2, 1])
+    column, row, depth = seen(pyrender.OrthographicCamera(1.0, 1.0), pose, [0.5, 0.5, -3], (72, 72))
+    # Half a metre of the two that ymag = 1 sees from the middle to the side.
+    assert (column, row, depth) == (pytest.approx(36 * 1.25, abs=0.6), pytest.approx(36 * 0.75, abs=0.6), pytest.approx(1.5))
+
+
+@pytest.mark.parametrize("rows, message", [
+    (np.diag([1.0, 1, 0]), "expected an invertible matrix"), (np.zeros((3, 3)), "expected an invertible matrix"),
+    (np.diag([1.0, 1, -1]), "a reflection"), ([[1, 0.5, 0], [0, 1, 0], [0, 0, 1]], "expected axes at right angles"),
+])  # fmt: skip
+def test_poses_that_are_no_view_are_refused(rows, message):
+    pose = np.eye(4)
+    pose[:3, :3] = rows
+    with pytest.raises(ValueError, match="a camera's pose: .*" + message):
+        seen(pyrender.PerspectiveCamera(1.0), pose, [0, 0, -2], (32, 32))
+
+
+def test_matrices_of_nodes_are_finite():
+    with pytest.raises(ValueError, match="a Node's matrix: expected 4 x 4 finite numbers"):
+        pyrender.Node(matrix=np.full((4, 4), np.nan))

@@ -99,7 +99,7 @@ def projection_of(camera: Camera, pose: NDArray[Any], width: int, height: int) -
 def _rigid(pose: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     """The nearest pose without scale and shear, and the scale of each axis."""
     M = np.asarray(pose, dtype=np.float64)[:3, :3]
-    U, stretch, V = np.linalg.svd(M) if np.isfinite(M).all() else (M, np.zeros(3), M)
+    U, stretch, V = np.linalg.svd(M)
     if stretch[2] <= 1e-9 * stretch[0]:
         raise ArgumentError(f"a camera's pose: expected an invertible matrix, got {np.asarray(pose).tolist()}")
     R = U @ V
