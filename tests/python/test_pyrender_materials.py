@@ -81,6 +81,21 @@ def test_segments_have_an_alpha_with_rgba(renderer):
     assert segments.shape == (72, 96, 4) and (segments == (0, 0, 0, 255)).all()
 
 
+@pytest.mark.parametrize("color", [300, -1, 0.5, np.nan, (0, 0, 256), (0.2, 0.4, 0.6), (1, 2), "red"])
+def test_colors_of_segments_are_bytes(renderer, color):
+    """pyrender divides them by 255: 300 would be clamped, 0.5 black."""
+    scene, node = scene_of(pyrender.Mesh.from_trimesh(square(0.6)))
+    other = scene.add(pyrender.Mesh.from_trimesh(square(0.6)), pose=at(0, 0, 5))  # Also of what is not seen.
+    with pytest.raises(ValueError, match="seg_node_map: expected whole numbers from 0 to 255"):
+        renderer.render(scene, flags=RenderFlags.SEG, seg_node_map={node: 1, other: color})
+
+
+@pytest.mark.parametrize("color", [44, 44.0, (44, 44, 44), np.full(3, 44.0), [44, 44, 44, 255], np.uint8(44)])
+def test_colors_of_segments_are_one_number_or_three(renderer, color):
+    scene, node = scene_of(pyrender.Mesh.from_trimesh(square(0.6)))
+    assert middle(renderer.render(scene, flags=RenderFlags.SEG, seg_node_map={node: color})[0]) == [44] * 3
+
+
 # What is seen through.
 
 

@@ -41,6 +41,7 @@ class Renderer:
         is_map = bool(flags & RenderFlags.SEG)
         if is_map and seg_node_map is None:
             raise ArgumentError("render: RenderFlags.SEG needs seg_node_map, a dict of nodes to colours")
+        colors = {shown: _rgb(color) for shown, color in (seg_node_map or {}).items()} if is_map else None
         drawing = self._drawing = self._drawing or Drawing()
         drawing.update(scene, flags, seg_node_map if is_map else None, self.point_size)
         size = (self.viewport_width, self.viewport_height)
@@ -55,14 +56,13 @@ class Renderer:
         seen = depth = found["depth"]
         if projection.far is not None:
             depth = np.where(depth <= projection.far + projection.back, depth, np.float32(0))
-        colors = dict(seg_node_map or {}) if is_map else None
         segments = None if colors is None else _segments(found["object_id"], depth, drawing, colors)
         for shown, ends in drawing.lines(is_solid):
             of_lines = depths_of_lines(ends, projection)
             is_front = of_lines < np.where(depth > 0, depth, np.inf)
             depth = np.where(is_front, of_lines, depth)
             if colors is not None and segments is not None:
-                segments[is_front] = _rgb(colors[shown])
+                segments[is_front] = colors[shown]
         metres = projection.depths(depth)
         if flags & RenderFlags.DEPTH_ONLY:
             return metres
@@ -113,17 +113,20 @@ class OffscreenRenderer(Renderer):
     """What scripts render with; a Renderer, which draws into no window here, either."""
 
 
-def _segments(object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, colors: "Mapping[Node, Any]") -> NDArray[Any]:
+def _segments(object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, colors: "Mapping[Node, NDArray[Any]]") -> NDArray[Any]:
     """Height x width x 3 uint8: the colour of each pixel's node, black where there is none."""
     table = np.zeros((len(drawing.view.object_names()) + 1, 3), np.uint8)
     for place, name in enumerate(drawing.view.object_names(), 1):
-        table[place] = _rgb(colors[drawing.shown[name.partition("/")[0]]])  # "node 1/part" is of "node 1".
+        table[place] = colors[drawing.shown[name.partition("/")[0]]]  # "node 1/part" is of "node 1".
     return table[np.where(depth > 0, object_id, 0).astype(int)]
 
 
 def _rgb(color: Any) -> NDArray[Any]:
-    """uint8 x 3 of a number or of three, 0 to 255."""
+    """uint8 x 3 of a number or of three (or four), 0 to 255."""
     given = np.asarray(color)
+    is_number = given.dtype.kind in "buif" and (given.ndim == 0 or given.shape in ((3,), (4,)))
+    if not is_number or not ((given == np.floor(given)) & (given >= 0) & (given <= 255)).all():
+        raise ArgumentError(f"render: seg_node_map: expected whole numbers from 0 to 255, one or three for a node, got {color!r}")
     return np.broadcast_to(given if given.ndim == 0 else given[:3], 3).astype(np.uint8)
 
 
