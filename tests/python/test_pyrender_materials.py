@@ -120,6 +120,33 @@ def test_depths_and_segments_are_of_transparent_meshes_too(renderer, how):
     np.testing.assert_array_equal(renderer.render(scene)[0], before)
 
 
+@pytest.mark.parametrize("ground", [(1.0, 0.0, 0.0, 1.0), (0.2, 0.9, 0.5, 1.0), (1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.4)])
+@pytest.mark.parametrize("is_flat", [False, True])
+def test_colors_over_the_background_are_the_same_with_rgba(renderer, ground, is_flat):
+    """Half of blue over red, blended linearly, is 188 of both; edges are blended, too."""
+    material = plain(alphaMode="BLEND", baseColorFactor=(0.0, 0.0, 1.0, 0.5))
+    scene, _ = scene_of(pyrender.Mesh([pyrender.Primitive(CORNERS[:3], indices=FACES[:1], material=material)]), bg_color=ground)
+    flags = RenderFlags.FLAT if is_flat else RenderFlags.NONE
+    rgb, rgba = renderer.render(scene, flags=flags)[0], renderer.render(scene, flags=flags | RenderFlags.RGBA)[0]
+    # Colours that are kept beside their alpha are rounded before they are blended: by 1 / 255, more in what is dark and thin.
+    tolerance = 0 if ground[3] == 1 else 3
+    np.testing.assert_allclose(rgba[..., :3].astype(int), rgb.astype(int), atol=tolerance)
+    alpha = 255 * (0.5 + 0.5 * ground[3])
+    assert rgba[36, 50, 3] == pytest.approx(alpha, abs=1) and rgba[0, 0, 3] == round(255 * ground[3])
+    if ground[:3] == (1, 0, 0):
+        # Dielectrics reflect a few percent of the ambient light.
+        np.testing.assert_allclose(middle(rgb)[::2], [188, 188], atol=3)
+
+
+def test_colors_before_a_far_plane_are_those_without_one(renderer):
+    material = plain(alphaMode="BLEND", baseColorFactor=(0.0, 0.0, 1.0, 0.5))
+    scene, _ = scene_of(pyrender.Mesh.from_trimesh(square(), material=material), bg_color=(1.0, 0.0, 0.0))
+    expected = middle(renderer.render(scene)[0])
+    scene.add(pyrender.Mesh.from_trimesh(square(0.1)), pose=at(1.2, 0, -3.5))
+    scene.main_camera_node.camera.zfar = 3.2
+    np.testing.assert_allclose(middle(renderer.render(scene)[0]), expected, atol=2)
+
+
 def test_what_is_transparent():
     blend = {"alphaMode": "BLEND"}
     faint = np.full((2, 2, 4), 100, np.uint8)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import ArgumentError
+from .colors import decoded, encoded
 from .constants import RenderFlags
 from .drawing import Drawing
 from .lines import depths_of_lines
@@ -75,19 +76,20 @@ class Renderer:
         assert self._drawing is not None
         view = self._drawing.view
         is_whole = not ((depth == 0) & (seen > 0)).any()  # Nothing is left behind zfar.
-        if is_whole and not flags & RenderFlags.RGBA:
+        if is_whole and (scene.bg_color[3] >= 1 or not flags & RenderFlags.RGBA):
             view.settings["background.mode"] = "color"
             view.settings["background.color"] = [float(part) for part in np.clip(scene.bg_color[:3], 0, 1)]
             picture = projection.picked(view.render(projection.drawn))
-            color = np.empty((*picture.shape[:2], 3), np.uint8)
-            for channel in range(3):  # Four times as fast as copying pixel by pixel.
+            color = np.empty((*picture.shape[:2], 4 if flags & RenderFlags.RGBA else 3), np.uint8)
+            for channel in range(color.shape[2]):  # Four times as fast as copying pixel by pixel.
                 color[:, :, channel] = picture[:, :, channel]
             return color
         view.settings["background.mode"] = "transparent"
         picture = projection.picked(view.render(projection.drawn)).astype(np.float32) / 255
         alpha = picture[:, :, 3:] * ((depth > 0) | (seen == 0))[:, :, None]
         ground = scene.bg_color.astype(np.float32)
-        color = picture[:, :, :3] * alpha + ground[:3] * (1 - alpha)
+        # Linear, as surfaces are blended with the background that they are drawn over.
+        color = encoded(decoded(picture[:, :, :3]) * alpha + decoded(ground[:3]) * (1 - alpha))
         if flags & RenderFlags.RGBA:
             color = np.concatenate([color, alpha + ground[3] * (1 - alpha)], axis=2)
         return (np.clip(color, 0, 1) * 255 + 0.5).astype(np.uint8)
