@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ArgumentError
 from .camera import Camera
+from .changes import Children, Noted, note
 from .light import Light
 from .mesh import Mesh
 
@@ -34,7 +35,7 @@ def _quaternion(R: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(found if found[3] >= 0 else -found)
 
 
-class Node:
+class Node(Noted):
     """A pose with a mesh, a camera or a light, and children. The pose is a matrix, or translation, rotation (x, y, z, w) and
     scale."""
 
@@ -60,7 +61,7 @@ class Node:
         light: Light | None = None,
     ) -> None:
         self.name, self.camera, self.mesh, self.light, self.skin, self.weights = name, camera, mesh, light, skin, weights
-        self.children: list[Node] = list(children or ())
+        self._children: list[Node] = Children(children or ())
         self._translation, self._rotation, self._scale = np.zeros(3), np.array([0.0, 0, 0, 1]), np.ones(3)
         self._matrix: NDArray[Any] | None = np.eye(4)
         if matrix is not None:
@@ -69,6 +70,16 @@ class Node:
             for attribute, value in (("translation", translation), ("rotation", rotation), ("scale", scale)):
                 if value is not None:
                     setattr(self, attribute, value)
+
+    @property
+    def children(self) -> "list[Node]":
+        """The list may be changed, too: the node's scene follows."""
+        return self._children
+
+    @children.setter
+    def children(self, nodes: "list[Node]") -> None:
+        self._children = Children(nodes)
+        note(is_tree=True)
 
     @property
     def matrix(self) -> NDArray[Any]:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...errors import ArgumentError
 from .bounded import Bounded
 from .camera import Camera
+from .changes import Latest, note
 from .colors import color
 from .light import DirectionalLight, Light, PointLight, SpotLight
 from .mesh import Mesh
@@ -29,11 +30,18 @@ class Scene(Bounded):
         self.name = name
         self.bg_color, self.ambient_light = bg_color, ambient_light
         self._roots: list[Node] = []
+        #: The parent of each node, None for roots, in the order in which they were added; as of the change `_seen` of trees.
+        self._parents: dict[Node, Node | None] = {}
+        self._seen = Latest.tree
         self._main_camera_node: Node | None = None
         inner = {id(child) for node in nodes or () for child in node.children}
         for node in nodes or ():
             if id(node) not in inner:
                 self.add_node(node)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._seen = -1  # Numbers of changes are those of a process.
 
     @property
     def bg_color(self) -> NDArray[Any]:
@@ -42,6 +50,7 @@ class Scene(Bounded):
     @bg_color.setter
     def bg_color(self, value: ArrayLike | None) -> None:
         self._bg_color = color(value, 4, 1.0)
+        note()
 
     @property
     def ambient_light(self) -> NDArray[Any]:
@@ -50,6 +59,7 @@ class Scene(Bounded):
     @ambient_light.setter
     def ambient_light(self, value: ArrayLike | None) -> None:
         self._ambient_light = color(value, 3, 0.0)
+        note()
 
     def walk(self) -> Iterator[tuple[Node, Node | None, NDArray[Any]]]:
         """Each node with its parent and its 4 x 4 pose in the world, parents first."""
@@ -60,12 +70,22 @@ class Scene(Bounded):
             yield node, parent, pose
             waiting.extend((child, node, pose) for child in reversed(node.children))
 
+    def _tree(self) -> dict[Node, Node | None]:
+        """The parent of each node, after lists of children may have been changed by others."""
+        if self._seen != Latest.tree:
+            seen = Latest.tree
+            found = {node: parent for node, parent, _ in self.walk()}
+            kept = {node: found.pop(node) for node in self._parents if node in found}
+            self._parents, self._seen = kept | found, seen
+        return self._parents
+
     @property
     def nodes(self) -> set[Node]:
-        return {node for node, _, _ in self.walk()}
+        return set(self._tree())
 
     def _ordered(self, attribute: str, kind: type = object) -> list[Node]:
-        return [node for node, _, _ in self.walk() if isinstance(getattr(node, attribute), kind) and getattr(node, attribute) is not None]
+        """In the order in which they were added."""
+        return [node for node in self._tree() if (held := getattr(node, attribute)) is not None and isinstance(held, kind)]
 
     @property
     def mesh_nodes(self) -> set[Node]:
@@ -118,16 +138,17 @@ class Scene(Bounded):
     @property
     def main_camera_node(self) -> Node | None:
         """The node whose camera is drawn from: the first that was added, unless another one is assigned."""
-        known = self._ordered("camera")
-        if self._main_camera_node not in known:
-            self._main_camera_node = known[0] if known else None
+        node = self._main_camera_node
+        if node is None or node.camera is None or not self.has_node(node):
+            self._main_camera_node = next(iter(self._ordered("camera")), None)
         return self._main_camera_node
 
     @main_camera_node.setter
     def main_camera_node(self, node: Node) -> None:
-        if node not in self.camera_nodes:
+        if not isinstance(node, Node) or node.camera is None or not self.has_node(node):
             raise ArgumentError("main_camera_node: expected a node of this scene that has a camera")
         self._main_camera_node = node
+        note()
 
     @property
     def bounds(self) -> NDArray[Any]:
@@ -169,47 +190,82 @@ class Scene(Bounded):
 
     def add_node(self, node: Node, parent_node: Node | None = None) -> None:
         """Adds a node with its children."""
-        known = self.nodes
-        if node in known:
+        tree = self._tree()
+        if node in tree:
             raise ValueError("Scene.add_node: the node is in the scene already")
-        if parent_node is not None and parent_node not in known:
+        if parent_node is not None and parent_node not in tree:
             raise ValueError("Scene.add_node: the parent is not in the scene")
+        added = self._below(node, parent_node)
+        if any(below in tree for below in added):
+            raise ValueError("Scene.add_node: a child of the node is in the scene already")
         (self._roots if parent_node is None else parent_node.children).append(node)
+        tree.update(added)
+        self._note(parent_node)
 
     def has_node(self, node: Node) -> bool:
-        return node in self.nodes
+        return node in self._tree()
 
     def remove_node(self, node: Node) -> None:
         """Removes a node with its children."""
-        for found, parent, _ in self.walk():
-            if found is node:
-                (self._roots if parent is None else parent.children).remove(node)
-                return
-        raise ValueError("Scene.remove_node: the node is not in the scene")
+        tree = self._tree()
+        if node not in tree:
+            raise ValueError("Scene.remove_node: the node is not in the scene")
+        parent = tree[node]
+        removed = self._below(node, parent)
+        (self._roots if parent is None else parent.children).remove(node)
+        for below in removed:
+            tree.pop(below, None)
+        self._note(parent)
+
+    @staticmethod
+    def _below(node: Node, parent: Node | None) -> dict[Node, Node | None]:
+        """A node and all that is below it, with the parent of each."""
+        found: dict[Node, Node | None] = {}
+        waiting = [(node, parent)]
+        while waiting:
+            node, parent = waiting.pop()
+            if node in found:
+                raise ValueError("Scene: expected nodes with one parent each")
+            found[node] = parent
+            waiting.extend((child, node) for child in reversed(node.children))
+        return found
+
+    def _note(self, parent: Node | None) -> None:
+        """Notes a change below a node that `_parents` has been told of."""
+        if parent is None:
+            note()  # No list of children has changed.
+        else:
+            self._seen = Latest.tree
 
     def clear(self) -> None:
         """Removes all nodes."""
         self._roots.clear()
+        self._parents.clear()
+        note()
 
     def get_nodes(
         self, node: Node | None = None, name: str | None = None, obj: Any = None, obj_name: str | None = None
     ) -> set[Node]:
         """The nodes that all given conditions hold for."""
         found = set()
-        for known in self.nodes:
+        for known in self._tree() if node is None else [node] if self.has_node(node) else []:
+            if name is not None and known.name != name:
+                continue
             held = [thing for thing in (known.mesh, known.camera, known.light) if thing is not None]
-            fits = (node is None or known is node) and (name is None or known.name == name)
-            fits = fits and (obj is None or any(thing is obj for thing in held))
+            fits = obj is None or any(thing is obj for thing in held)
             if fits and (obj_name is None or any(thing.name == obj_name for thing in held)):
                 found.add(known)
         return found
 
     def get_pose(self, node: Node) -> NDArray[Any]:
         """The node's 4 x 4 pose in the world."""
-        for known, _, pose in self.walk():
-            if known is node:
-                return pose
-        raise ValueError("Scene.get_pose: the node is not in the scene")
+        tree = self._tree()
+        if node not in tree:
+            raise ValueError("Scene.get_pose: the node is not in the scene")
+        pose, above = node.matrix, tree[node]
+        while above is not None:
+            pose, above = above.matrix @ pose, tree[above]
+        return pose
 
     def set_pose(self, node: Node, pose: ArrayLike) -> None:
         """Sets the node's pose, 4 x 4, in its parent's frame."""
