@@ -1,6 +1,6 @@
 """A pyrender scene as EasyPBR's: kept from image to image, so that only what changed is made again."""
 
-from collections.abc import Container
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,7 +12,7 @@ from ... import _easypbr
 from ...scene import Scene as OwnScene
 from ...viewer import Viewer as OwnViewer
 from .constants import RenderFlags
-from .light import DirectionalLight, PointLight, SpotLight
+from .light import DirectionalLight, Light, PointLight, SpotLight
 from .lines import segments_of
 from .mesh import Mesh, Primitive
 from .node import Node
@@ -73,14 +73,26 @@ class Drawing:
         self._wires: list[_easypbr.Mesh] = []
         self._lines: list[tuple[Node, _easypbr.Mesh, _Prototype, NDArray[Any]]] = []
         self._is_flat = False
+        #: Lights that move with the camera, with their poses in its frame; the flags that say whether they cast shadows.
+        self.carried: list[tuple[Light, NDArray[Any]]] = []
+        self._carried_flags = 0
         self._ambient: tuple[float, ...] | None = None
         self._count = 0
         self.view.settings.update({
             "ground.mode": "none", "path.enabled": False, "shadows.mode": "pcf", "image.samples": _SAMPLES, "annotation.legend": False, "annotation.colorbar": False,
         })  # fmt: skip
 
-    def update(self, scene: Scene, flags: int, only: "Container[Node] | None" = None, point_size: float = 1.0) -> None:
-        """Takes over nodes, lights and the background. `only`: nodes that are drawn, None: all."""
+    def update(
+        self,
+        scene: Scene,
+        flags: int,
+        only: "Container[Node] | None" = None,
+        point_size: float = 1.0,
+        carried: "Sequence[tuple[Light, NDArray[Any]]]" = (),
+    ) -> None:
+        """Takes over nodes, lights and the background. `only`: nodes that are drawn, None: all. `carried`: lights that carry() puts
+        where the camera is, with their poses in its frame."""
+        self.carried = list(carried)
         used: set[Node] = set()
         prototypes: set[Primitive] = set()
         self.shown, self._clear, self._wires, self._lines = {}, [], [], []
@@ -181,10 +193,10 @@ class Drawing:
         for name in own.light_names():
             own.remove_light(name)
         for number, (light, pose) in enumerate(lights):
-            casts = any(isinstance(light, kind) and flags & flag for kind, flag in _SHADOWS)
-            own.set_light(f"light {number}", light.made(pose, bool(casts)))
+            own.set_light(f"light {number}", light.made(pose, _casts(light, flags)))
+        self._carried_flags = flags
         ambient = tuple(float(part) for part in scene.ambient_light)
-        is_given = bool(lights) or any(ambient)
+        is_given = bool(lights) or bool(self.carried) or any(ambient)
         if self._ambient != (ambient if is_given else None):
             self._ambient = ambient if is_given else None
             own.environment = np.full((8, 16, 3), ambient, np.float32) if any(ambient) else _easypbr.Environment()
@@ -197,6 +209,11 @@ class Drawing:
         for name, value in values.items():
             settings[name] = value
 
+    def carry(self, pose: NDArray[Any]) -> None:
+        """Puts the lights that move with the camera to its pose."""
+        for number, (light, local) in enumerate(self.carried):
+            self.view.scene.set_light(f"camera light {number}", light.made(pose @ local, _casts(light, self._carried_flags)))
+
     def set_camera(self, projection: Projection) -> None:
         """Draws with a projection."""
         self.view.camera = projection.own
@@ -207,6 +224,11 @@ class Drawing:
         self.shown, self._primitives, self._nodes = {}, {}, {}
         self._clear, self._wires, self._lines = [], [], []
         self.view = OwnViewer(scene=OwnScene())
+
+
+def _casts(light: Light, flags: int) -> bool:
+    """Whether a light casts shadows."""
+    return any(isinstance(light, kind) and bool(flags & flag) for kind, flag in _SHADOWS)
 
 
 def _is_wire(primitive: Primitive, flags: int) -> bool:

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
+from .changes import Noted
 from .colors import color as color_of
 
 
-class Light:
+class Light(Noted):
     """What all lights have: a linear colour (whole numbers: 0 to 255), and an intensity in lux (directional) or candela."""
 
     intensity: float

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ... import _easypbr
 from ...errors import ArgumentError
+from .changes import Noted
 from .colors import color, decoded
 
 
@@ -31,7 +32,7 @@ class Sampler:
         self.name, self.magFilter, self.minFilter, self.wrapS, self.wrapT = name, magFilter, minFilter, wrapS, wrapT
 
 
-class Texture:
+class Texture(Noted):
     """An image: an array, or an image of Pillow. `source_channels` says which channels it has: "R", "RG", "RGB", "RGBA"."""
 
     name: str | None
@@ -96,7 +97,7 @@ _ALPHA_MODES = ("OPAQUE", "MASK", "BLEND")
 
 # The order of the fields is that of pyrender's positional arguments.
 @dataclass(eq=False, repr=False)
-class Material:
+class Material(Noted):
     """What all materials have."""
 
     name: str | None = None

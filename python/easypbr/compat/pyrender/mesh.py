@@ -11,6 +11,7 @@ from ... import _easypbr
 from ...conversions.maker import finite_rows
 from ...errors import ArgumentError
 from .bounded import Bounded
+from .changes import Noted
 from .colors import colors, encoded
 from .constants import GLTF
 from .material import Material, MetallicRoughnessMaterial
@@ -37,7 +38,7 @@ _TAKEN_AS: dict[str, Callable[[Any], Any]] = {
 }
 
 
-class Primitive(Bounded):
+class Primitive(Noted, Bounded):
     """Arrays that are drawn at once. `indices` are m x 3 of triangles, or flat; `mode` is glTF's; `poses` (k x 4 x 4) draws
     it k times."""
 
@@ -174,7 +175,7 @@ class Primitive(Bounded):
         return root
 
 
-class Mesh(Bounded):
+class Mesh(Noted, Bounded):
     """Primitives under one name."""
 
     primitives: list[Primitive]
