@@ -161,7 +161,8 @@ def test_modules_of_pyrender_are_there():
         "constants": "RenderFlags GLTF TextAlign DEFAULT_Z_FAR",
         "light": "Light SpotLight", "material": "Material MetallicRoughnessMaterial", "mesh": "Mesh", "node": "Node",
         "offscreen": "OffscreenRenderer", "primitive": "Primitive", "renderer": "Renderer",
-        "sampler": "Sampler", "scene": "Scene", "texture": "Texture", "utils": "format_color_vector format_color_array", "viewer": "Viewer",
+        "sampler": "Sampler", "scene": "Scene", "texture": "Texture", "viewer": "Viewer",
+        "utils": "format_color_vector format_color_array",
     }  # fmt: skip
     for name, words in expected.items():
         module = importlib.import_module(f"easypbr.compat.pyrender.{name}")
@@ -185,14 +186,15 @@ def rounded():
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (2, 2, 2), (0.5, 1, 2)])
 @pytest.mark.parametrize("camera", [
-    pyrender.PerspectiveCamera(1.0, zfar=40.0), pyrender.IntrinsicsCamera(75, 70, 35, 27.3), WeakPerspectiveCamera((0.5, 0.7), (0, 0)),
+    pyrender.PerspectiveCamera(1.0, zfar=40.0), pyrender.IntrinsicsCamera(75, 70, 35, 27.3),
+    WeakPerspectiveCamera((0.5, 0.7), (0, 0)),
 ])  # fmt: skip
 def test_poses_of_cameras_may_have_a_scale_and_be_rounded(camera, scale):
-    """As in pyrender, whose view is the inverse of the pose, the scale counts: depths and planes are those of the scaled axes."""
+    """As in pyrender, whose view is the inverse of the pose, the scale counts, also for depths and planes."""
     pose = rounded() @ np.diag([*scale, 1.0])
     depth = 0.3 if isinstance(camera, WeakPerspectiveCamera) else 2.0
-    points = (pose @ np.column_stack([[[0.1, 0.2], [-0.4, 0.3]], [[-depth], [-depth * 1.2]], np.ones((2, 1))])[:, :, None])[:, :3, 0]
-    for point in points:
+    for place in ([0.1, 0.2, -depth], [-0.4, 0.3, -1.2 * depth]):
+        point = (pose @ [*place, 1])[:3]
         found, expected = seen(camera, pose, point, (96, 72)), projected(camera, pose, point, (96, 72))
         np.testing.assert_allclose(found[:2], expected[:2], atol=0.75)
         # Rounding shears the axes by up to 1e-3, which is left out.

@@ -1,5 +1,5 @@
-"""easypbr.compat.pyrender: Viewer, without its window: its flags, its lights, and what it does before each frame. The window itself:
-tests/window/test_pyrender_window.py."""
+"""easypbr.compat.pyrender: Viewer, without its window: its flags, its lights, and what it does before each frame.
+The window itself: tests/window/test_pyrender_window.py."""
 
 import threading
 
@@ -57,7 +57,8 @@ def updates(monkeypatch):
 
 def test_keyword_arguments_are_flags():
     scene, _ = scene_of(square())
-    made = viewer_of(scene, shadows=True, cull_faces=False, all_wireframe=True, point_size=7, rotate=True, render_flags={"point_size": 3})
+    words = {"shadows": True, "cull_faces": False, "all_wireframe": True, "point_size": 7, "rotate": True}
+    made = viewer_of(scene, render_flags={"point_size": 3}, **words)
     assert {name: made.render_flags[name] for name in ("shadows", "cull_faces", "all_wireframe", "point_size")} == {
         "shadows": True, "cull_faces": False, "all_wireframe": True, "point_size": 7}  # fmt: skip
     assert made.viewer_flags["rotate"] is True and "shadows" not in made.viewer_flags
@@ -115,6 +116,15 @@ def test_lights_of_the_camera_move_with_it():
     viewer.scene.add(pyrender.DirectionalLight(intensity=2.0))
     frame(viewer)
     assert viewer._drawing.view.scene.light_names() == ["light 0"]
+
+
+def test_lights_of_the_camera_wait_for_something_to_place_a_camera_for():
+    scene = pyrender.Scene(bg_color=[0.0, 0, 0])
+    viewer = viewer_of(scene, use_direct_lighting=True)
+    viewer._follow()
+    scene.add(square())
+    assert frame(viewer).max() > 100
+    assert viewer._drawing.view.scene.light_names() == ["camera light 0"]
 
 
 # Changes.
@@ -201,8 +211,8 @@ def test_the_window_does_not_wait_for_ever_for_the_lock():
 def test_registered_keys_call_their_functions():
     calls = []
     scene, _ = scene_of(square())
-    keys = {"s": lambda viewer: calls.append(("s", viewer)), " ": [lambda viewer, *a, **b: calls.append((a, b)), [1, 2], {"c": 3}]}
-    viewer = viewer_of(scene, registered_keys=keys)
+    spaced = [lambda viewer, *a, **b: calls.append((a, b)), [1, 2], {"c": 3}]
+    viewer = viewer_of(scene, registered_keys={"s": lambda viewer: calls.append(("s", viewer)), " ": spaced})
 
     class Event:
         def __init__(self, key, repeat=False):

@@ -90,8 +90,8 @@ class Drawing:
         point_size: float = 1.0,
         carried: "Sequence[tuple[Light, NDArray[Any]]]" = (),
     ) -> None:
-        """Takes over nodes, lights and the background. `only`: nodes that are drawn, None: all. `carried`: lights that carry() puts
-        where the camera is, with their poses in its frame."""
+        """Takes over nodes, lights and the background. `only`: nodes that are drawn, None: all. `carried`: lights that carry()
+        puts where the camera is, with their poses in its frame."""
         self.carried = list(carried)
         used: set[Node] = set()
         prototypes: set[Primitive] = set()

@@ -95,7 +95,8 @@ class Node(Noted):
     def matrix(self, value: ArrayLike) -> None:
         T = np.asarray(value, dtype=np.float64)
         if T.shape != (4, 4) or not np.isfinite(T).all() or not np.allclose(T[3], (0, 0, 0, 1)):
-            raise ArgumentError(f"a Node's matrix: expected 4 x 4 finite numbers with a last row of (0, 0, 0, 1), got {T.tolist()}")
+            expected = "expected 4 x 4 finite numbers with a last row of (0, 0, 0, 1)"
+            raise ArgumentError(f"a Node's matrix: {expected}, got {T.tolist()}")
         self._matrix = T.copy()
         self._translation = T[:3, 3].copy()
         self._scale = np.linalg.norm(T[:3, :3], axis=0)

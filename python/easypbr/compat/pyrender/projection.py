@@ -127,7 +127,8 @@ def _checked(given: Any, who: str) -> NDArray[Any]:
     if allowed[3].sum() != 1 or (np.abs(P[~allowed]) > 1e-9 * np.abs(P).max()).any():
         raise ArgumentError(
             f"{who}: expected a last row of (0, 0, -1, 0) for a pinhole, P[:2] of [[a, 0, b, c], [0, d, e, f]], "
-            f"or of (0, 0, 0, 1) for parallel lines of sight, P[:2] of [[a, 0, 0, b], [0, c, 0, d]], and P[2] of (0, 0, a, b); got {P.tolist()}"
+            f"or of (0, 0, 0, 1) for parallel lines of sight, P[:2] of [[a, 0, 0, b], [0, c, 0, d]], "
+            f"and P[2] of (0, 0, a, b); got {P.tolist()}"
         )
     return np.where(allowed, P, 0)
 

@@ -115,7 +115,9 @@ class OffscreenRenderer(Renderer):
     """What scripts render with; a Renderer, which draws into no window here, either."""
 
 
-def _segments(object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, colors: "Mapping[Node, NDArray[Any]]") -> NDArray[Any]:
+def _segments(
+    object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, colors: "Mapping[Node, NDArray[Any]]"
+) -> NDArray[Any]:
     """Height x width x 3 uint8: the colour of each pixel's node, black where there is none."""
     table = np.zeros((len(drawing.view.object_names()) + 1, 3), np.uint8)
     for place, name in enumerate(drawing.view.object_names(), 1):
@@ -128,7 +130,8 @@ def _rgb(color: Any) -> NDArray[Any]:
     given = np.asarray(color)
     is_number = given.dtype.kind in "buif" and (given.ndim == 0 or given.shape in ((3,), (4,)))
     if not is_number or not ((given == np.floor(given)) & (given >= 0) & (given <= 255)).all():
-        raise ArgumentError(f"render: seg_node_map: expected whole numbers from 0 to 255, one or three for a node, got {color!r}")
+        expected = "expected whole numbers from 0 to 255, one or three for a node"
+        raise ArgumentError(f"render: seg_node_map: {expected}, got {color!r}")
     return np.broadcast_to(given if given.ndim == 0 else given[:3], 3).astype(np.uint8)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import _easypbr
+from ...errors import ArgumentError
 from .changes import Latest
 from .constants import RenderFlags
 from .drawing import Drawing
@@ -22,8 +23,8 @@ _RENDER_FLAGS: dict[str, Any] = {
 _VIEWER_FLAGS: dict[str, Any] = {
     "mouse_pressed": False, "rotate": False, "rotate_rate": np.pi / 3, "rotate_axis": (0.0, 0.0, 1.0), "view_center": None,
     "record": False, "use_raymond_lighting": False, "use_direct_lighting": False, "lighting_intensity": 3.0,
-    "use_perspective_cam": True, "save_directory": None, "window_title": "Scene Viewer", "refresh_rate": 30.0, "fullscreen": False,
-    "show_world_axis": False, "show_mesh_axes": False, "caption": None,
+    "use_perspective_cam": True, "save_directory": None, "window_title": "Scene Viewer", "refresh_rate": 30.0,
+    "fullscreen": False, "show_world_axis": False, "show_mesh_axes": False, "caption": None,
 }  # fmt: skip
 #: Seconds that the window waits for who changes the scene, before it draws what it has.
 _PATIENCE = 0.1
@@ -144,7 +145,10 @@ class Viewer:
         """Moves the lights that the camera carries with it."""
         if not self._drawing.carried:
             return
-        pose = self._drawing.view.camera.T_world_cam
+        try:
+            pose = self._drawing.view.camera.T_world_cam
+        except ArgumentError:
+            return  # The scene has neither a camera nor anything that one could be placed for.
         if self._carried is None or not np.array_equal(pose, self._carried):
             self._drawing.carry(pose)
             self._carried = pose
