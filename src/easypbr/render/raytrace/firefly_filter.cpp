@@ -10,9 +10,7 @@ namespace easypbr::render {
 namespace {
 
 /// Binomial, over cells.
-using Kernel = std::array<float, 5>;
-constexpr Kernel kernel = {0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f};
-constexpr Kernel squared_kernel = {0.00390625f, 0.0625f, 0.140625f, 0.0625f, 0.00390625f};
+constexpr std::array<float, 5> kernel = {0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f};
 constexpr int radius = int(kernel.size()) / 2;
 // A pixel's light comes by way of cells beside it, and depends on the pixels beside those that they reach.
 static_assert(FireflyFilter::reach == 2 * (radius + 1) * FireflyFilter::cell);
@@ -41,7 +39,7 @@ void FireflyFilter::begin_frame(const Vec2i& size, float most) {
     taken_.assign(count, Vec3::Zero());
     columns_.clear();
     for (int x = 0; x < size.x(); ++x) columns_.push_back(between(x, cells_.x()));
-    if (cells_found_.size() != count) cells_found_.assign(count, {});
+    if (cells_found_.size() != count) cells_found_.assign(count, 0);
 }
 
 void FireflyFilter::take(const PixelRect& block, PathRadiance& radiance) {
@@ -54,10 +52,7 @@ void FireflyFilter::take(const PixelRect& block, PathRadiance& radiance) {
                     visit(i, cell_at((block.x + x) / cell, (block.y + y) / cell), bright);
             }
     };
-    each([&](size_t, size_t of_cell, float bright) {
-        cells_found_[of_cell].light += bright;
-        cells_found_[of_cell].squares += bright * bright;
-    });
+    each([&](size_t, size_t of_cell, float bright) { cells_found_[of_cell] += bright; });
     each([&](size_t i, size_t of_cell, float bright) {
         const float part = staying(cells_found_[of_cell], bright);
         radiance.within[i] += part * radiance.beyond[i];
@@ -65,20 +60,18 @@ void FireflyFilter::take(const PixelRect& block, PathRadiance& radiance) {
     });
 }
 
-float FireflyFilter::staying(const Found& found, float bright) {
-    // Of the part p: p^2 / paths is the variance of the pixel, (1 - p)^2 * contrast the square of its bias.
-    const float paths = found.light / (bright * cell * cell);
-    return paths * found.contrast / (1 + paths * found.contrast);
+float FireflyFilter::staying(float found, float bright) {
+    const float paths = found / (bright * cell * cell);
+    return paths / (1 + paths);
 }
 
-template <class Value>
-void FireflyFilter::blur(std::vector<Value>& values, const std::array<float, 5>& taps) const {
+void FireflyFilter::blur(std::vector<Vec3>& values) const {
     const int columns = cells_.x(), rows = cells_.y();
-    const float* const middle = taps.data() + radius;
-    std::vector<Value> across(values.size());
+    const float* const middle = kernel.data() + radius;
+    std::vector<Vec3> across(values.size());
     // `here` is element `at` of a line of `count`.
-    const auto blurred = [&](const Value* here, int at, int count, ptrdiff_t step) {
-        Value sum = *here * *middle;
+    const auto blurred = [&](const Vec3* here, int at, int count, ptrdiff_t step) {
+        Vec3 sum = *here * *middle;
         for (int k = std::max(-radius, -at); k <= std::min(radius, count - 1 - at); ++k)
             if (k != 0) sum += middle[k] * here[k * step];
         return sum;
@@ -123,36 +116,13 @@ std::vector<Vec3> FireflyFilter::around(const Reflectance& reflectance) const {
     return sums;
 }
 
-void FireflyFilter::compare(const std::vector<Vec3>& own, const std::vector<Vec3>& reached) {
-    // What cells would get if all light was spread, and its variance.
-    std::vector<float> light(cells_found_.size()), variance(light.size());
-    for (size_t i = 0; i < light.size(); ++i) {
-        const Found& found = cells_found_[i];
-        const float all = luminance(reached[i]);
-        // There is no surface any more around what other frames have found, or its tiles have ended.
-        if (!(found.light > 0 && all > 0)) continue;
-        light[i] = found.light / all;
-        variance[i] = found.squares / (all * all);
-    }
-    blur(light, kernel);
-    blur(variance, squared_kernel);
-    for (size_t i = 0; i < light.size(); ++i) {
-        Found& found = cells_found_[i];
-        const float all = luminance(own[i]), spread = light[i] * all, change = spread - found.light,
-                    noise = found.squares + variance[i] * all * all, most = std::max(spread, found.light);
-        found.contrast = most > 0 ? std::max(change * change - noise, 0.0f) / (most * most) : 0;
-    }
-}
-
 void FireflyFilter::spread(const Reflectance& reflectance, const Receive& receive) {
     if (std::ranges::none_of(taken_, is_any)) return;
-    const std::vector<Vec3> own = around(reflectance);
-    std::vector<Vec3> sums = own;
-    blur(sums, kernel);
-    compare(own, sums);
+    std::vector<Vec3> sums = around(reflectance);
+    blur(sums);
     for (size_t i = 0; i < taken_.size(); ++i)
         if (is_any(taken_[i])) taken_[i] = taken_[i].cwiseQuotient(sums[i]);
-    blur(taken_, kernel);
+    blur(taken_);
     parallel_for(size_t(size_.y()), 16, [&](size_t of_row) {
         const int y = int(of_row);
         const auto [above, below, part] = between(y, cells_.y());
@@ -164,8 +134,7 @@ void FireflyFilter::spread(const Reflectance& reflectance, const Receive& receiv
         reflectance(y, row);
         for (size_t x = 0; x < row.size(); ++x) {
             const auto& [left, right, of_right] = columns_[x];
-            const Vec3 light =
-                (1 - of_right) * of_cells[size_t(left)] + of_right * of_cells[size_t(right)];
+            const Vec3 light = (1 - of_right) * of_cells[size_t(left)] + of_right * of_cells[size_t(right)];
             row[x] = row[x].cwiseProduct(light);
         }
         receive(y, row);

@@ -1,7 +1,6 @@
 // Light of rare bright paths, which would be single bright pixels.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -12,11 +11,12 @@
 
 namespace easypbr::render {
 
-/// Spreads light of rare bright paths over the surfaces around their pixels. How many
-/// paths as bright a pixel is expected to have found is told by all pixels of its square, as in Zirr et al.
-/// 2018 ("Re-weighting Firefly Samples for Improved Finite-Sample Monte Carlo Estimates"). That is the noise
-/// of what stays at its pixel; the squares around tell what spreading changes. The part that stays makes
-/// their sum least: as samples are added, all light comes to stay where it is found.
+/// Spreads light of rare bright paths over the surfaces around their pixels. How many paths as bright a pixel
+/// is expected to have found is told by all pixels of its square, as in Zirr et al. 2018 ("Re-weighting
+/// Firefly Samples for Improved Finite-Sample Monte Carlo Estimates"). Of n such paths the part p = n / (n +
+/// 1) stays at its pixel: it makes the sum of the variance, p^2 / n of the square of the light, and of the
+/// square of the bias least, which is (1 - p)^2 of it where spreading takes all light away. As samples are
+/// added, n grows, and all light comes to stay where it is found.
 class FireflyFilter {
   public:
     /// Pixels that light is added up in squares of.
@@ -46,15 +46,9 @@ class FireflyFilter {
 
   private:
     size_t cell_at(int column, int row) const { return size_t(row) * size_t(cells_.x()) + size_t(column); }
-    /// Of a cell in all frames, beyond the limit.
-    struct Found {
-        float light = 0;    ///< luminance
-        float squares = 0;  ///< of the luminance of each path
-        /// The square of what spreading changes, in parts of the light, but for noise.
-        float contrast = 0;
-    };
-    /// The part of a path's light that stays at its pixel.
-    static float staying(const Found& found, float bright);
+    /// The part of a path's light that stays at its pixel. `found`: luminance beyond the limit that all
+    /// frames have found in its cell.
+    static float staying(float found, float bright);
 
     /// The two cells of a row or column that a pixel lies between.
     struct Between {
@@ -65,15 +59,13 @@ class FireflyFilter {
     /// The reflectance of the pixels around the middle of each cell, by their distance.
     std::vector<Vec3> around(const Reflectance& reflectance) const;
     /// Spreads values over the cells around.
-    template <class Value>
-    void blur(std::vector<Value>& values, const std::array<float, 5>& taps) const;
-    void compare(const std::vector<Vec3>& own, const std::vector<Vec3>& reached);
+    void blur(std::vector<Vec3>& values) const;
 
     Vec2i size_{0, 0}, cells_{0, 0};
     std::vector<Between> columns_;  ///< of the pixels of a row
     float most_ = 0;
-    std::vector<Vec3> taken_;  ///< for each cell
-    std::vector<Found> cells_found_;
+    std::vector<Vec3> taken_;         ///< for each cell
+    std::vector<float> cells_found_;  ///< luminance beyond the limit, of all frames
 };
 
 }  // namespace easypbr::render
