@@ -68,6 +68,18 @@ TEST(Image, EncodesColorAndLeavesAlphaLinear) {
     EXPECT_EQ(values_of<uint8_t>(to_u8(nothing)), (std::vector<uint8_t>{0}));
 }
 
+// 0.5 * 255 = 127.5 rounds away from zero; 65535 / 255 = 257.
+TEST(Image, DataHasNoCurve) {
+    const Image numbers = image_of<float>(1, 1, 4, PixelType::f32, {0.5f, -1, 7, 0.25f});
+    EXPECT_EQ(values_of<uint8_t>(data_to_u8(numbers)), (std::vector<uint8_t>{128, 0, 255, 64}));
+    const Image nothing = image_of<float>(1, 1, 1, PixelType::f32, {std::numeric_limits<float>::quiet_NaN()});
+    EXPECT_EQ(values_of<uint8_t>(data_to_u8(nothing)), (std::vector<uint8_t>{0}));
+    const Image wide = image_of<uint16_t>(2, 1, 1, PixelType::u16, {100 * 257, 65535});
+    EXPECT_EQ(values_of<uint8_t>(data_to_u8(wide)), (std::vector<uint8_t>{100, 255}));
+    const Image codes = image_of<uint8_t>(1, 1, 2, PixelType::u8, {7, 9});
+    EXPECT_EQ(values_of<uint8_t>(data_to_u8(codes)), (std::vector<uint8_t>{7, 9}));
+}
+
 // Half of the red (0.25, 0, 0) is (0.125, 0, 0, 0.5) in floats, and code 137 (255 * 0.53710) straight.
 TEST(Image, PicturesOfFloatsArePremultiplied) {
     const Image picture = image_of<float>(2, 1, 4, PixelType::f32, {0.125f, 0, 0, 0.5f, 0.5f, 0, 0, 0});

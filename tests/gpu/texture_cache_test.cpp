@@ -147,5 +147,34 @@ TEST(HostTextures, AlphaWeighsColors) {
     EXPECT_EQ(texel(host, 1, 1, 0, 0, 3), 32768u);
 }
 
+/// One texel of two channels, grey and alpha.
+template <class T>
+Texture grey_texture(PixelType type, T grey, T alpha) {
+    auto image = std::make_shared<Image>(1, 1, 2, type);
+    image->template at<T>(0, 0)[0] = grey;
+    image->template at<T>(0, 0)[1] = alpha;
+    Texture texture;
+    texture.image = std::move(image);
+    return texture;
+}
+
+// Data is a number, whatever its type: code 128 is 128 * 257 of 16 bits. Colours of floats are light: half of
+// it is code 188 (255 * 0.73536 = 187.52), which is decoded again; their alpha has no curve.
+TEST(HostTextures, TypesOfTexelsHoldTheSame) {
+    const Texture textures[] = {grey_texture<uint8_t>(PixelType::u8, 128, 128),
+                                grey_texture<uint16_t>(PixelType::u16, 128 * 257, 128 * 257),
+                                grey_texture<float>(PixelType::f32, 0.5f, 0.5f)};
+    for (const Texture& texture : textures) {
+        TextureCache cache;
+        const native::Texture& host = cache.host(texture, TexelKind::data);
+        EXPECT_EQ(texel(host, 0, 1, 0, 0, 0), 128u) << int(texture.image->type());
+        EXPECT_EQ(texel(host, 0, 1, 0, 0, 3), 128u) << int(texture.image->type());
+    }
+    TextureCache cache;
+    const native::Texture& light = cache.host(textures[2], TexelKind::color);
+    EXPECT_EQ(texel(light, 0, 1, 0, 0, 0), uint32_t(std::lround(linear_from_srgb(188 / 255.0f) * 65535)));
+    EXPECT_EQ(texel(light, 0, 1, 0, 0, 3), 128 * 257u);
+}
+
 }  // namespace
 }  // namespace easypbr::gpu::texture_cache_test

@@ -230,6 +230,48 @@ TEST(Glb, MergesMetallicRoughnessAndOpacity) {
     EXPECT_EQ(color[3], 90);
 }
 
+/// An image of floats of one colour.
+std::shared_ptr<const Image> flat_floats(std::initializer_list<float> color) {
+    auto image = std::make_shared<Image>(2, 2, int(color.size()), PixelType::f32);
+    size_t i = 0;
+    for (float& v : image->pixels<float>()) v = color.begin()[i++ % color.size()];
+    return image;
+}
+
+// Half is code 128 of data and code 188 of light (255 * 0.73536 = 187.52), of the same image, too.
+TEST(Glb, FloatsAreCodedByWhatTheyAreUsedAs) {
+    MeshData data = square();
+    Material apart, packed;
+    const auto half = flat_floats({0.5f, 0.5f, 1.0f});
+    apart.base_color_texture.image = apart.emissive_texture.image = apart.normal_texture.image = half;
+    apart.metallic_texture.image = flat_floats({0.25f});
+    apart.roughness_texture.image = apart.opacity_texture.image = apart.occlusion_texture.image = half;
+    packed.roughness_texture.image = packed.metallic_texture.image = packed.occlusion_texture.image = half;
+    packed.roughness_texture.channel = 1;
+    packed.metallic_texture.channel = 2;
+    data.materials = {apart, packed};
+    data.parts = {{"a", 0, 1, 0}, {"b", 1, 1, 1}};
+    const auto read = first_child(round_trip(Mesh(data)).mesh).materials;
+    const auto code = [](const Texture& texture, int channel) {
+        return int(texture.image->at<uint8_t>(1, 1)[channel]);
+    };
+    const auto number = [&](const Texture& texture) { return code(texture, texture.channel); };
+    const Material& a = read.at(0);
+    EXPECT_EQ(code(a.base_color_texture, 0), 188);
+    EXPECT_EQ(code(a.base_color_texture, 3), 128);  // the opacity
+    EXPECT_EQ(code(a.emissive_texture, 1), 188);
+    EXPECT_EQ(code(a.normal_texture, 0), 128);
+    EXPECT_EQ(code(a.normal_texture, 2), 255);
+    EXPECT_EQ(number(a.metallic_texture), 64);
+    EXPECT_EQ(number(a.roughness_texture), 128);
+    EXPECT_EQ(number(a.occlusion_texture), 128);
+    const Material& b = read.at(1);
+    EXPECT_EQ(number(b.roughness_texture), 128);
+    EXPECT_EQ(number(b.metallic_texture), 255);
+    EXPECT_EQ(number(b.occlusion_texture), 128);
+    EXPECT_EQ(b.roughness_texture.image, b.occlusion_texture.image);
+}
+
 /// An image of 8 bits with one channel, row by row.
 std::shared_ptr<const Image> grey_image(int width, std::initializer_list<uint8_t> texels) {
     auto image = std::make_shared<Image>(width, int(texels.size()) / width, 1, PixelType::u8);

@@ -103,6 +103,31 @@ TEST(MeshMaterialFiles, ObjWritesImagesThatNoFileHolds) {
     EXPECT_TRUE(fs::exists(folder / "my_m_base_color.png"));
 }
 
+// Half is code 128 of data and code 188 of light (255 * 0.73536 = 187.52). The alpha of colours stays theirs.
+TEST(MeshMaterialFiles, ObjCodesFloatsByWhatTheyAreUsedAs) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(3, 10);
+    auto image = std::make_shared<Image>(2, 2, 4, PixelType::f32);
+    std::ranges::fill(image->pixels<float>(), 0.5f);
+    Material m;
+    m.base_color_texture.image = m.roughness_texture.image = m.normal_texture.image = image;
+    m.alpha_mode = AlphaMode::blend;
+    mesh.materials = {m};
+    Mesh(mesh).save(folder / "m.obj");
+    // OBJ, MTL, an image of colours with alpha, and one of data for two uses.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 4);
+    const Material back = Mesh(folder / "m.obj").snapshot()->materials.at(0);
+    const auto code = [](const Texture& texture, int channel) {
+        return int(texture.image->at<uint8_t>(1, 1)[channel]);
+    };
+    EXPECT_EQ(code(back.base_color_texture, 0), 188);
+    EXPECT_EQ(code(back.base_color_texture, 3), 128);
+    EXPECT_EQ(back.alpha_mode.value(), AlphaMode::blend);
+    EXPECT_FALSE(back.opacity_texture);
+    EXPECT_EQ(code(back.roughness_texture, 0), 128);
+    EXPECT_EQ(code(back.normal_texture, 2), 128);
+}
+
 TEST(MeshMaterialFiles, ObjImagesReplaceNoneOfOtherFiles) {
     const TemporaryFolder folder;
     const auto save = [&](const char* name, uint8_t value) {

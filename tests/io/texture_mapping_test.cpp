@@ -9,6 +9,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/mesh/texture_mapping.h"
 #include "io/flat_image.h"
 #include "io/temporary_folder.h"
 
@@ -119,6 +120,19 @@ TEST(TextureMapping, FiltersWithoutAPlaceAreNamed) {
             << name;
     }
     EXPECT_EQ(warnings_of(mesh, folder / "m.glb"), "") << "glTF has samplers";
+}
+
+// Codes of opacity have no curve: 0.1 is code 26, within 32 of 0, as light it would be code 89. 0.2 is
+// code 51.
+TEST(TextureMapping, MasksOfFloatsAreThoseOfTheirNumbers) {
+    for (const bool is_mask : {true, false}) {
+        auto image = std::make_shared<Image>(1, 2, 1, PixelType::f32);
+        image->at<float>(0, 0)[0] = is_mask ? 0.1f : 0.2f;
+        image->at<float>(0, 1)[0] = 1;
+        Texture texture;
+        texture.image = image;
+        EXPECT_EQ(io::obj_alpha_mode(1, texture), is_mask ? AlphaMode::mask : AlphaMode::blend);
+    }
 }
 
 }  // namespace easypbr::texture_mapping_test

@@ -138,3 +138,62 @@ def test_files_whose_materials_are_all_unlit_are_shown_exactly(tmp_path):
     read = Mesh(tmp_path / "square.glb")
     assert read.children[0].style.lit is False
     assert (shown(read)[0] == 128).all()
+
+
+def textured_square() -> Mesh:
+    """In the plane z = 0, with texture coordinates of the whole image."""
+    mesh = Mesh(np.float32([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]), [[0, 1, 2], [0, 2, 3]])
+    mesh.UV = np.float32([[0, 0], [1, 0], [1, 1], [0, 1]])
+    mesh.material.roughness = mesh.material.metallic = 1
+    return mesh
+
+
+def centre_of(mesh: Mesh, *names: str) -> "list[np.ndarray]":
+    """Values of layers in the middle of the square."""
+    scene = easypbr.Scene()
+    scene.show(mesh, "square")
+    view = Viewer((16, 16), scene=scene)
+    view.camera = easypbr.Camera.look_at((0, 0, 3), (0, 0, 0))
+    data = view.render_layers(list(names), samples=1)
+    return [data[name][8, 8] for name in names]
+
+
+@pytest.mark.parametrize("kind", ["uint8", "uint16", "float32", "exr"])
+def test_texels_of_data_are_numbers_whatever_their_type(tmp_path, kind):
+    largest = {"uint8": 255, "uint16": 65535}.get(kind, 1)
+
+    def texels(*values: float) -> "np.ndarray | str":
+        array = np.tile(np.array(values) * largest, (4, 4, 1)).astype(kind if kind != "exr" else "float32")
+        if kind != "exr":
+            return array
+        path = tmp_path / f"{len(list(tmp_path.iterdir()))}.exr"
+        easypbr.save_image(array, path)
+        return str(path)
+
+    mesh = textured_square()
+    mesh.material.roughness_texture = texels(0.5, 0.5, 0.5)
+    mesh.material.metallic_texture = texels(0.25, 0.25, 0.25)
+    mesh.material.normal_texture = texels(0.8, 0.5, 0.9)
+    roughness, metallic, normal = centre_of(mesh, "roughness", "metallic", "normal_world")
+    # A step of 8 bits; of a direction two, as its texels are twice that apart.
+    assert abs(roughness - 0.5) <= 1 / 255 and abs(metallic - 0.25) <= 1 / 255
+    assert np.abs(normal - np.array([0.6, 0, 0.8])).max() <= 2 / 255
+    mesh.material.opacity_texture = texels(0.5, 0.5, 0.5)
+    mesh.material.alpha_mode = "mask"
+    for cutoff, seen in ((0.49, 1), (0.51, 0)):
+        mesh.material.alpha_cutoff = cutoff
+        assert centre_of(mesh, "instance_id") == [seen]
+
+
+@pytest.mark.parametrize("extension", ["glb", "obj"])
+def test_texels_of_data_are_written_as_numbers(tmp_path, extension):
+    mesh = textured_square()
+    for name in ("roughness", "metallic", "normal"):
+        setattr(mesh.material, f"{name}_texture", np.full((2, 2, 3), 0.5, np.float32))
+    mesh.save(tmp_path / f"square.{extension}")
+    read = Mesh(tmp_path / f"square.{extension}")
+    read = read.children[0] if read.children else read
+    # Roughness is green and metallic blue in glTF.
+    for name, channel in (("roughness", 1), ("metallic", 2), ("normal", 0)):
+        # 0.5 * 255 = 127.5 rounds away from zero.
+        assert (getattr(read.material, f"{name}_texture")[..., channel] == 128).all(), name

@@ -273,6 +273,38 @@ double corner_factor(double a, double b) {
     return (half(a, b) + half(b, a)) / (2 * pi);
 }
 
+// Texels of floats show the same in a mirror as where they are seen: light above 1 is 1, and half of a number
+// is code 128 (to half a code, which the light of a card of which a part is metal follows).
+TEST(RayLight, AMirrorShowsTexelsAsTheyAreSeen) {
+    const auto picture_of = [](PixelType type, bool emits) {
+        auto image = std::make_shared<Image>(1, 1, 1, type);
+        if (type == PixelType::u8)
+            image->at<uint8_t>(0, 0)[0] = emits ? 255 : 128;
+        else
+            image->at<float>(0, 0)[0] = emits ? 4.0f : 0.5f;
+        Material m;
+        m.base_color = Vec3::Ones();
+        (emits ? m.emissive_texture : m.metallic_texture).image = image;
+        if (emits) m.emissive = Vec3::Ones();
+        if (!emits) m.metallic = 1;
+        Scene scene;
+        scene.show(rectangle(-4, -4, 4, 4, 0, mirror()), "floor");
+        // Upright, facing the camera, as above.
+        Mesh card = facing_square(0.5f, m);
+        card.set_T_parent_mesh(
+            Eigen::Affine3d(Eigen::Translation3d(0, 1, 1) * Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())));
+        scene.show(card, "card");
+        scene.set_environment(constant_environment(0.25f));
+        app::Session session = sky_session(scene, 48, 4);
+        session.settings().rays.enabled = true;
+        session.settings().camera.projection = Projection::perspective;
+        look_from(session, Vec3d(0.3, -4, 2.5), 50);
+        return render_linear(session, 8);
+    };
+    EXPECT_EQ(largest_difference(picture_of(PixelType::u8, true), picture_of(PixelType::f32, true)), 0);
+    EXPECT_LE(largest_difference(picture_of(PixelType::u8, false), picture_of(PixelType::f32, false)), 2e-3);
+}
+
 // A mirror shows a white card that a large lamp stands before. 0.01: some thousand points of the lamp, whose
 // parts differ by half, and the edges' normals. Its middle alone gives 0.66 of it.
 TEST(RayLight, AMirrorShowsWhatALargeLampLights) {

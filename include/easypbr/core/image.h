@@ -116,6 +116,10 @@ Image with_channels(const Image& image, int channels);
 /// The same picture as u8 (sRGB) when it is f32 (linear, clamped to [0, 1]) or u16; u8 is returned as it is.
 Image to_u8(const Image& image);
 
+/// The same numbers as u8, for images of data in place of colours, such as roughness and normals: f32 is
+/// clamped to [0, 1] and has no sRGB curve; u8 and u16 are as in to_u8().
+Image data_to_u8(const Image& image);
+
 /// The same picture as linear f32; u8 and u16 colour is decoded from sRGB, alpha (2nd or 4th channel) is
 /// scaled only.
 Image to_linear_f32(const Image& image);

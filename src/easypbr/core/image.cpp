@@ -55,6 +55,27 @@ bool has_alpha_from(const Image& image, T least) {
     return true;
 }
 
+/// `code` gives the code of a value in [0, 1] of f32, by its place among all values.
+template <class Code>
+Image u8_of(const Image& image, Code&& code) {
+    if (image.type() == PixelType::u8) return image;
+    Image out(image.width(), image.height(), image.channels(), PixelType::u8);
+    uint8_t* to = out.pixels<uint8_t>().data();
+    const size_t count = out.pixels<uint8_t>().size();
+    if (image.type() == PixelType::u16) {
+        const uint16_t* in = image.pixels<uint16_t>().data();
+        parallel_for(count, pixel_grain,
+                     [&](size_t i) { to[i] = uint8_t((in[i] * 255u + 32767u) / 65535u); });
+        return out;
+    }
+    const float* in = image.pixels<float>().data();
+    parallel_for(count, pixel_grain, [&](size_t i) {
+        const float v = in[i] > 0 ? std::min(in[i], 1.0f) : 0.0f;
+        to[i] = uint8_t(std::lround(code(v, i) * 255.0f));
+    });
+    return out;
+}
+
 /// Colour times a function of alpha.
 template <class Scale>
 Image with_scaled_color(const Image& image, Scale&& scale) {
@@ -95,24 +116,13 @@ Image with_channels(const Image& image, int channels) {
 }
 
 Image to_u8(const Image& image) {
-    if (image.type() == PixelType::u8) return image;
-    Image out(image.width(), image.height(), image.channels(), PixelType::u8);
-    uint8_t* to = out.pixels<uint8_t>().data();
-    const int channels = image.channels();
-    const size_t count = image.pixel_count() * channels;
-    if (image.type() == PixelType::u16) {
-        const uint16_t* in = image.pixels<uint16_t>().data();
-        parallel_for(count, pixel_grain,
-                     [&](size_t i) { to[i] = uint8_t((in[i] * 255u + 32767u) / 65535u); });
-        return out;
-    }
-    const float* in = image.pixels<float>().data();
-    parallel_for(count, pixel_grain, [&](size_t i) {
-        const float v = in[i] > 0 ? std::min(in[i], 1.0f) : 0.0f;
-        const float coded = is_alpha(int(i % channels), channels) ? v : srgb_from_linear(v);
-        to[i] = uint8_t(std::lround(coded * 255.0f));
+    return u8_of(image, [channels = size_t(image.channels())](float v, size_t i) {
+        return is_alpha(int(i % channels), int(channels)) ? v : srgb_from_linear(v);
     });
-    return out;
+}
+
+Image data_to_u8(const Image& image) {
+    return u8_of(image, [](float v, size_t) { return v; });
 }
 
 Image to_linear_f32(const Image& image) {

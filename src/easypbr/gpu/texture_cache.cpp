@@ -102,14 +102,19 @@ gl::Wrapping wrapping(Wrap wrap) {
                                   : gl::Wrapping::clamp;
 }
 
+/// Only colours have the curve of sRGB.
+Image to_u8(const Image& image, TexelKind kind) {
+    return kind == TexelKind::data ? data_to_u8(image) : easypbr::to_u8(image);
+}
+
 /// The image as u8, without values that are no numbers.
-Image to_valid_u8(const Image& image, const std::string& name) {
-    if (image.type() != PixelType::f32) return to_u8(image);
+Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
+    if (image.type() != PixelType::f32) return to_u8(image, kind);
     Image valid = image;
     if (const size_t replaced = replace_non_finite(valid))
         log_warning(fmt::format("texture '{}': {} values that are NaN or infinite were replaced by 0", name,
                                 replaced));
-    return to_u8(valid);
+    return to_u8(valid, kind);
 }
 
 native::Texture::Wrap host_wrapping(Wrap wrap) {
@@ -243,7 +248,7 @@ PooledVector<std::byte> all_levels(const Image& image, Wrap wrap, native::Textur
 PooledVector<std::byte> host_texels(const Texture& texture, TexelKind kind, native::Texture& to) {
     const Image* image = texture.image.get();
     Image changed;
-    if (image->type() != PixelType::u8) image = &(changed = to_valid_u8(*image, texture.path));
+    if (image->type() != PixelType::u8) image = &(changed = to_valid_u8(*image, kind, texture.path));
     while (std::max(image->width(), image->height()) > 1 << (native::Texture::most_levels - 1))
         image = &(changed = next_level(*image, kind));
     to.width = image->width();
@@ -269,7 +274,7 @@ PooledVector<std::byte> host_texels(const Texture& texture, TexelKind kind, nati
 
 gl::Texture make_texture(const Image& image, TexelKind kind, const std::string& name) {
     // Three channels are uploaded as they are; grey and grey with alpha are spread to four.
-    Image level = to_valid_u8(image, name);
+    Image level = to_valid_u8(image, kind, name);
     if (level.channels() < 3) level = with_channels(level, 4);
     // A texture larger than the driver takes is drawn at half the resolution, or less.
     while (std::max(level.width(), level.height()) > gl::Context::current().info().max_texture_size)

@@ -197,9 +197,7 @@ void save_obj(const MeshData& flat, const fs::path& path) {
     const fs::path library = fs::path(path).replace_extension(".mtl");
     const ObjText text = encode_obj(flat, library.filename().string(), fs::absolute(path).parent_path());
     FileSet files;
-    for (const auto& [name, image] : text.images)
-        files.add(path.parent_path() / name,
-                  encode_png(image->type() == PixelType::f32 ? to_u8(*image) : *image));
+    for (const auto& [name, image] : text.images) files.add(path.parent_path() / name, encode_png(*image));
     if (!text.mtl.empty()) files.add(library, text.mtl);
     files.add(path, text.obj);
     files.commit();

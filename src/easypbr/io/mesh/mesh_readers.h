@@ -43,9 +43,9 @@ std::string encode_ply(const MeshData& mesh, const fs::path& folder);
 std::string encode_spz(const MeshData& mesh);
 
 /// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without
-/// materials. Images that no file holds are to be written into `folder` beside it, as PNG, under the names
-/// that the MTL has for them: files of `folder` stay, but for the images of an MTL that is replaced. Throws
-/// ArgumentError for names of files with a line break.
+/// materials. Images that no file holds, of u8 or u16, are to be written into `folder` beside it, as PNG,
+/// under the names that the MTL has for them: files of `folder` stay, but for the images of an MTL that is
+/// replaced. Throws ArgumentError for names of files with a line break.
 struct ObjText {
     std::string obj, mtl;
     std::map<std::string, std::shared_ptr<const Image>> images = {};

@@ -72,7 +72,7 @@ bool is_binary(const Texture& texture) {
         return true;
     };
     const Image& image = *texture.image;
-    return image.type() == PixelType::u8 ? has_no_grey(image) : has_no_grey(to_u8(image));
+    return image.type() == PixelType::u8 ? has_no_grey(image) : has_no_grey(data_to_u8(image));
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ int wrapped(float coordinate, int size, Wrap wrap) {
     return std::clamp(int(c * float(size)), 0, size - 1);
 }
 
-/// One channel as a number in the shader's range: colours of integers decoded from sRGB, others scaled.
+/// One channel from 0 to 1, as the textures of shaders hold it: colours of integers decoded from sRGB, other
+/// integers scaled.
 float value_of(const Image& image, int x, int y, int channel, bool color) {
     const int c = std::min(channel, image.channels() - 1);
     switch (image.type()) {
@@ -32,7 +33,7 @@ float value_of(const Image& image, int x, int y, int channel, bool color) {
         }
         default: {
             const float value = image.at<float>(x, y)[c];
-            return std::isfinite(value) ? value : 0;
+            return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0;
         }
     }
 }

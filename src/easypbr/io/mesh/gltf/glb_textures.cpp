@@ -37,8 +37,8 @@ struct Plane {
     }
 };
 
-Plane plane_of(const Texture& texture, int channel) {
-    const Image image = to_u8(*texture.image);
+Plane plane_of(const Texture& texture, int channel, TexelUse use = TexelUse::number) {
+    const Image image = use == TexelUse::color ? to_u8(*texture.image) : data_to_u8(*texture.image);
     return {.image = image, .channel = std::min(channel, image.channels() - 1)};
 }
 
@@ -141,8 +141,8 @@ Texture merged_texture(const Texture& like, const std::vector<Plane>& planes) {
 }
 
 /// A plane as the merge has it.
-Plane placed(const Merge& merge, const Texture& texture, int channel) {
-    Plane plane = plane_of(texture, channel);
+Plane placed(const Merge& merge, const Texture& texture, int channel, TexelUse use = TexelUse::number) {
+    Plane plane = plane_of(texture, channel, use);
     const auto found = merge.transforms.find(&texture);
     if (found != merge.transforms.end() && !found->second.isIdentity(0)) plane.transform = found->second;
     return plane;
@@ -171,7 +171,7 @@ Texture base_color(const Material& material) {
     std::vector<Plane> planes(4);
     if (color)
         for (int c = 0; c < 3; ++c)
-            planes[size_t(c)] = placed(merge, color, color.image->channels() < 3 ? 0 : c);
+            planes[size_t(c)] = placed(merge, color, color.image->channels() < 3 ? 0 : c, TexelUse::color);
     planes[3] = placed(merge, opacity, opacity.channel);
     return merged_texture(*merge.like, planes);
 }
@@ -234,14 +234,14 @@ OrderedJson& GlbContent::extend(OrderedJson& object, const char* extension) {
 size_t GlbMaterials::image_index(const std::shared_ptr<const Image>& image) {
     const auto [found, is_new] = images_.try_emplace(image, images_.size());
     if (is_new) {
-        const auto png = encode_png(image->type() == PixelType::f32 ? to_u8(*image) : *image);
+        const auto png = encode_png(*image);
         const size_t view = content_.add_view(png.data(), png.size());
         content_.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
     }
     return found->second;
 }
 
-size_t GlbMaterials::texture_index(const Texture& texture) {
+size_t GlbMaterials::texture_index(const Texture& texture, TexelUse use) {
     const bool nearest = texture.filter == Filter::nearest;
     const OrderedJson sampler = {{"magFilter", nearest ? 9728 : 9729},
                                  {"minFilter", nearest ? 9728 : 9987},
@@ -254,12 +254,12 @@ size_t GlbMaterials::texture_index(const Texture& texture) {
         values.push_back(value);
         return values.size() - 1;
     };
-    const size_t source = image_index(texture.image);
+    const size_t source = image_index(texels_.of(texture, use));
     return index_in("textures", {{"sampler", index_in("samplers", sampler)}, {"source", source}});
 }
 
-OrderedJson GlbMaterials::texture_info(const Texture& texture) {
-    OrderedJson info = {{"index", texture_index(texture)}};
+OrderedJson GlbMaterials::texture_info(const Texture& texture, TexelUse use) {
+    OrderedJson info = {{"index", texture_index(texture, use)}};
     if (texture.uv_transform != Mat3::Identity())
         content_.extend(info, "KHR_texture_transform") = transform_json(texture.uv_transform);
     return info;
@@ -271,33 +271,36 @@ void GlbMaterials::add_surface(const Material& material, OrderedJson& json) {
                                   material.opacity};
     surface["metallicFactor"] = material.metallic;
     surface["roughnessFactor"] = material.roughness;
-    if (const Texture texture = base_color(material)) surface["baseColorTexture"] = texture_info(texture);
+    if (const Texture texture = base_color(material))
+        surface["baseColorTexture"] = texture_info(texture, TexelUse::color);
     if (const Texture texture = metallic_roughness(material))
-        surface["metallicRoughnessTexture"] = texture_info(texture);
+        surface["metallicRoughnessTexture"] = texture_info(texture, TexelUse::number);
     if (const Texture& texture = material.normal_texture) {
-        json["normalTexture"] = texture_info(texture);
+        json["normalTexture"] = texture_info(texture, TexelUse::vector);
         json["normalTexture"]["scale"] = material.normal_scale;
     }
     if (const Texture texture = in_channel(material.occlusion_texture, 0)) {
-        json["occlusionTexture"] = texture_info(texture);
+        json["occlusionTexture"] = texture_info(texture, TexelUse::number);
         json["occlusionTexture"]["strength"] = material.occlusion_strength;
     }
 }
 
 void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
-    if (const Texture& texture = material.emissive_texture) json["emissiveTexture"] = texture_info(texture);
+    if (const Texture& texture = material.emissive_texture)
+        json["emissiveTexture"] = texture_info(texture, TexelUse::color);
     // The factor ends at 1; what is brighter goes into the strength.
     const float strength = std::max(1.0f, material.emissive.maxCoeff());
     json["emissiveFactor"] = color_json(material.emissive / strength);
     if (strength > 1) content_.extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
 }
 
-void GlbMaterials::add_texture(OrderedJson& extension, const char* key, const Texture& texture) {
-    if (texture) extension[key] = texture_info(texture);
+void GlbMaterials::add_texture(OrderedJson& extension, const char* key, const Texture& texture,
+                               TexelUse use) {
+    if (texture) extension[key] = texture_info(texture, use);
 }
 
 void GlbMaterials::add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel) {
-    add_texture(extension, key, in_channel(texture, channel));
+    add_texture(extension, key, in_channel(texture, channel), TexelUse::number);
 }
 
 void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
@@ -306,7 +309,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
                          {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
         add_channel(e, "clearcoatTexture", material.clearcoat_texture, 0);
         add_channel(e, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture, 1);
-        add_texture(e, "clearcoatNormalTexture", material.clearcoat_normal_texture);
+        add_texture(e, "clearcoatNormalTexture", material.clearcoat_normal_texture, TexelUse::vector);
         if (material.clearcoat_normal_texture)
             e["clearcoatNormalTexture"]["scale"] = material.clearcoat_normal_scale;
         content_.extend(json, khr_clearcoat) = std::move(e);
@@ -314,7 +317,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
     if (!material.sheen_color.isZero()) {
         OrderedJson e = {{"sheenColorFactor", color_json(material.sheen_color)},
                          {"sheenRoughnessFactor", material.sheen_roughness}};
-        add_texture(e, "sheenColorTexture", material.sheen_color_texture);
+        add_texture(e, "sheenColorTexture", material.sheen_color_texture, TexelUse::color);
         add_channel(e, "sheenRoughnessTexture", material.sheen_roughness_texture, 3);
         content_.extend(json, khr_sheen) = std::move(e);
     }
@@ -330,7 +333,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
     if (material.anisotropy > 0) {
         OrderedJson e = {{"anisotropyStrength", material.anisotropy},
                          {"anisotropyRotation", radians(double(material.anisotropy_rotation_deg))}};
-        add_texture(e, "anisotropyTexture", material.anisotropy_texture);
+        add_texture(e, "anisotropyTexture", material.anisotropy_texture, TexelUse::vector);
         content_.extend(json, khr_anisotropy) = std::move(e);
     }
 }
@@ -342,7 +345,7 @@ void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
         OrderedJson e = {{"specularFactor", material.specular},
                          {"specularColorFactor", color_json(material.specular_color)}};
         add_channel(e, "specularTexture", material.specular_texture, 3);
-        add_texture(e, "specularColorTexture", material.specular_color_texture);
+        add_texture(e, "specularColorTexture", material.specular_color_texture, TexelUse::color);
         content_.extend(json, khr_specular) = std::move(e);
     }
     if (material.transmission > 0) {

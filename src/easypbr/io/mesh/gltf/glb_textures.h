@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/io/mesh/png_texels.h"
 #include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
@@ -45,12 +46,13 @@ class GlbMaterials {
     void add_dielectric(const Material& material, OrderedJson& json);
     /// A texture that is read from one channel, which the format fixes.
     void add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel);
-    void add_texture(OrderedJson& extension, const char* key, const Texture& texture);
-    OrderedJson texture_info(const Texture& texture);
+    void add_texture(OrderedJson& extension, const char* key, const Texture& texture, TexelUse use);
+    OrderedJson texture_info(const Texture& texture, TexelUse use);
     size_t image_index(const std::shared_ptr<const Image>& image);
-    size_t texture_index(const Texture& texture);
+    size_t texture_index(const Texture& texture, TexelUse use);
 
     GlbContent& content_;
+    PngTexels texels_;
     std::map<std::shared_ptr<const Image>, size_t> images_;
 };
 

@@ -25,10 +25,10 @@ struct MtlEntry {
     std::optional<float> dissolve, transparency;  ///< d, Tr
 };
 
-/// Whether red, green and blue are the same in nearly all texels, but for what JPEG makes of them.
+/// Whether red, green and blue are the same in nearly all texels of data, but for what JPEG makes of them.
 bool is_grey(const Image& image) {
     if (image.channels() < 3) return true;
-    const Image texels = to_u8(image);
+    const Image texels = data_to_u8(image);
     size_t colored = 0;
     for (int y = 0; y < texels.height(); ++y)
         for (int x = 0; x < texels.width(); ++x) {

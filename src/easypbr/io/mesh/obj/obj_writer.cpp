@@ -10,6 +10,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/mesh/png_texels.h"
 #include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/io/tables/face_polygons.h"
 #include "easypbr/scene/normals.h"
@@ -158,12 +159,12 @@ class MtlWriter {
         line("Kd {} {} {}\n", color.x(), color.y(), color.z());
         line("Ke {} {} {}\n", m.emissive.x(), m.emissive.y(), m.emissive.z());
         line("Pr {}\nPm {}\nd {}\nillum {}\n", m.roughness, m.metallic, m.opacity, m.unlit ? 0 : 2);
-        map("map_Kd", "base_color", m.base_color_texture);
-        map("map_Ke", "emissive", m.emissive_texture);
-        map("map_Pr", "roughness", m.roughness_texture);
-        map("map_Pm", "metallic", m.metallic_texture);
-        map("map_d", opacity_kind, obj_opacity_texture(m));
-        map("norm", "normal", m.normal_texture,
+        map("map_Kd", "base_color", TexelUse::color, m.base_color_texture);
+        map("map_Ke", "emissive", TexelUse::color, m.emissive_texture);
+        map("map_Pr", "roughness", TexelUse::number, m.roughness_texture);
+        map("map_Pm", "metallic", TexelUse::number, m.metallic_texture);
+        map("map_d", opacity_kind, TexelUse::number, obj_opacity_texture(m));
+        map("norm", "normal", TexelUse::vector, m.normal_texture,
             m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
     }
 
@@ -174,7 +175,7 @@ class MtlWriter {
 
     static constexpr std::string_view opacity_kind = "opacity";
 
-    void map(const char* keyword, std::string_view kind, const Texture& texture,
+    void map(const char* keyword, std::string_view kind, TexelUse use, const Texture& texture,
              const std::string& option = {}) {
         if (texture.path.empty() && !texture.image) return;
         body_ += keyword + option;
@@ -187,14 +188,15 @@ class MtlWriter {
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0) && obj_mapping().has_transform(M))
             line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
-        line(" {}\n", is_in_file(texture) ? name_in_line(path_of(texture)) : name_of(texture.image, kind));
+        line(" {}\n",
+             is_in_file(texture) ? name_in_line(path_of(texture)) : name_of(texels_.of(texture, use), kind));
     }
 
     std::string path_of(const Texture& texture) const {
         return texture.path.empty() ? std::string() : path_from_folder(texture.path, folder_);
     }
 
-    /// The name of an image made in memory or embedded in a GLB: the same for all uses.
+    /// The name of an image made in memory or embedded in a GLB: the same for all uses of its texels.
     const std::string& name_of(const std::shared_ptr<const Image>& image, std::string_view kind) {
         std::string& name = names_[image];
         for (int i = 1; name.empty(); ++i) {
@@ -213,6 +215,7 @@ class MtlWriter {
     fs::path folder_;
     std::string stem_, text_, body_;
     std::set<std::string> own_, taken_, material_names_;
+    PngTexels texels_;
     std::map<std::pair<std::string, std::string>, std::string> materials_;  ///< by plain name and body
     std::map<std::shared_ptr<const Image>, std::string> names_;
     std::map<std::string, std::shared_ptr<const Image>> images_;
