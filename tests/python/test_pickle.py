@@ -21,6 +21,7 @@ from easypbr import (
     Light,
     Material,
     Mesh,
+    RayTree,
     Scene,
     Style,
     Viewer,
@@ -189,11 +190,71 @@ def test_settings_come_back_as_dicts() -> None:
 
 
 def test_scenes_and_viewers_say_what_can_be_pickled_instead() -> None:
-    for value, name in ((Scene(), "Scene"), (Viewer((8, 8)), "Scene"), (Viewer((8, 8)).settings, "Viewer")):
+    scene = Scene()
+    scene.show(shapes.box(), "box")
+    view = Viewer((8, 8), scene=scene)
+    for value, name in ((scene, "Scene"), (view, "Scene"), (view.settings, "Viewer"), (view.moment(), "Moment"),
+                        (RayTree(shapes.box()), "RayTree")):
         with pytest.raises(TypeError, match=f"a {name} cannot be pickled: make one in each process"):
             pickle.dumps(value)
         with pytest.raises(TypeError, match="cannot be pickled"):
             copy.deepcopy(value)
+
+
+def annotated(seed: int = 0) -> Any:
+    """Two spheres, one behind the other and partly outside of the image: instances and what is at a pixel."""
+    scene = Scene()
+    scene.show(shapes.sphere(0.5), "near")
+    far = shapes.sphere(0.7)
+    far.T_parent_mesh = [[1, 0, 0, 0.9], [0, 1, 0, 0], [0, 0, 1, -1 - seed], [0, 0, 0, 1]]
+    scene.show(far, "far")
+    view = Viewer((48, 36), scene=scene)
+    view.camera = Camera.look_at((0, 0, 3), (0, 0, 0))
+    return view.render_layers(["instances"], classes={"far": 3})["instances"], view.pick(24, 18)
+
+
+def members(value: Any) -> dict[str, Any]:
+    return {name: getattr(value, name) for name in dir(value) if not name.startswith("_")}
+
+
+def equal_members(value: Any, other: Any) -> bool:
+    assert type(value) is type(other) and members(value).keys() == members(other).keys()
+    return all(np.array_equal(value, other, equal_nan=True) if isinstance(value, np.ndarray) else value == other
+               for value, other in zip(members(value).values(), members(other).values(), strict=True))
+
+
+def test_instances_and_picks_keep_all_members() -> None:
+    instances, pick = annotated()
+    assert [(value.name, value.semantic_id) for value in instances] == [("far", 3), ("near", 0)]
+    assert all(value.mask.any() for value in instances) and 0 < instances[0].truncation < 1
+    for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+        for value in (*instances, pick):
+            for other in (again(value, protocol), copy.deepcopy(value), copy.copy(value)):
+                assert equal_members(value, other)
+    assert not equal_members(instances[0], again(instances[1]))
+
+
+def test_instances_come_from_other_processes() -> None:
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        instances, pick = pool.map(annotated, [1], chunksize=1)[0]
+    own, own_pick = annotated(1)
+    assert equal_members(pick, own_pick)
+    assert all(equal_members(value, other) for value, other in zip(instances, own, strict=True))
+
+
+def test_bad_states_of_instances_are_refused() -> None:
+    instance = annotated()[0][0]
+    state = instance.__getstate__()
+    area = state["visible"]["area"]
+    for bad in (
+        state | {"picture_width": 3},
+        state | {"picture_height": -1},
+        state | {"visible": {"area": area, "pixels": b"1"}},
+        state | {"visible": {"area": area | {"x": -1}, "pixels": state["visible"]["pixels"]}},
+        state | {"amodal": {"area": {"x": 0, "y": 0, "width": -1, "height": -1}, "pixels": b"1"}},
+    ):
+        with pytest.raises(ArgumentError, match="pickle: Instance: expected"):
+            type(instance).__new__(type(instance)).__setstate__(bad)
 
 
 def test_states_of_newer_versions_and_bad_ones_are_refused() -> None:

@@ -7,6 +7,7 @@
 #include "easypbr/dataset/cuda_layers.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/rle.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
 
@@ -219,11 +220,13 @@ void bind_space(InstanceClass& instance) {
 }  // namespace
 
 void bind_ground_truth(nb::module_& module) {
-    const nb::class_<app::Moment> moment(
-        module, "Moment", "A scene and its camera at one moment, for optical flow: Viewer.moment().");
+    nb::class_<app::Moment>(module, "Moment",
+                            "A scene and its camera at one moment, for optical flow: Viewer.moment().")
+        .def("__reduce__", [](const app::Moment&) { refuse_pickle("Moment"); });
     InstanceClass instance(module, "Instance", "Annotation of one instance in an image.");
     bind_counts(instance);
     bind_space(instance);
+    bind_pickle(instance);
     module.def(
         "moment",
         [](SharedViewer& self, const nb::object& size) {

@@ -6,6 +6,7 @@
 #include "easypbr/geometry/rays.h"
 #include "easypbr/geometry/sample.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/pickle.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/normals.h"
 
@@ -126,6 +127,7 @@ void bind_ray_tree(nb::module_& module) {
             },
             nb::arg("mesh"))
         .def("__len__", &RayTree::face_count)
+        .def("__reduce__", [](const RayTree&) { refuse_pickle("RayTree"); })
         .def("cast", cast, nb::arg("origins"), nb::arg("directions"),
              nb::arg("max_distance").none() = nb::none(),
              nb::sig("def cast(self, origins: numpy.typing.ArrayLike, directions: numpy.typing.ArrayLike, "

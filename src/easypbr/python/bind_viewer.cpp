@@ -401,8 +401,8 @@ void bind_viewer(nb::module_& module) {
     bind_window(viewer);
     bind_gui(module, viewer);
     bind_server(module, viewer);
-    nb::class_<app::Pick>(module, "Pick", "The surface at a pixel.")
-        .def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
+    nb::class_<app::Pick> pick(module, "Pick", "The surface at a pixel.");
+    pick.def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
         .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty without parts.")
         .def_ro("is_face", &app::Pick::is_face,
                 "Whether `element` is a face; else it is a vertex, also of a voxel.")
@@ -417,6 +417,7 @@ void bind_viewer(nb::module_& module) {
                                pick.is_face ? "face" : "point", pick.element, pick.position.x(),
                                pick.position.y(), pick.position.z());
         });
+    bind_pickle(pick);
     module.def("layer_names", [] { return render::layer_names(); });
 }
 

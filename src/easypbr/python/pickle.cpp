@@ -150,6 +150,68 @@ void exchange(Archive& archive, Object& camera) {
     archive("distortion", camera.distortion);
 }
 
+template <class Archive, Is<PixelRect> Object>
+void exchange(Archive& archive, Object& rectangle) {
+    archive("x", rectangle.x);
+    archive("y", rectangle.y);
+    archive("width", rectangle.width);
+    archive("height", rectangle.height);
+}
+
+template <class Archive, Is<dataset::Bitmap> Object>
+void exchange(Archive& archive, Object& bitmap) {
+    archive("area", bitmap.area);
+    archive("pixels", bitmap.pixels);
+}
+
+template <class Archive, Is<dataset::Instance> Object>
+void exchange(Archive& archive, Object& instance) {
+    archive("id", instance.id);
+    archive("name", instance.name);
+    archive("semantic_id", instance.semantic_id);
+    archive("pixels_visible", instance.pixels_visible);
+    archive("pixels_amodal_inside", instance.pixels_amodal_inside);
+    archive("pixels_amodal", instance.pixels_amodal);
+    archive("visible_fraction", instance.visible_fraction);
+    archive("truncation", instance.truncation);
+    archive("box_visible", instance.box_visible);
+    archive("box_amodal", instance.box_amodal);
+    archive("picture_width", instance.picture.x());
+    archive("picture_height", instance.picture.y());
+    archive("visible", instance.visible);
+    archive("amodal", instance.amodal);
+    archive("T_world_obj", instance.T_world_obj.matrix());
+    archive("T_cam_obj", instance.T_cam_obj.matrix());
+    archive("box_min", (instance.box.min)());
+    archive("box_max", (instance.box.max)());
+    archive("corners_world", instance.corners_world);
+    archive("corners_cam", instance.corners_cam);
+    archive("corners_px", instance.corners_px);
+}
+
+template <class Archive, Is<app::Pick> Object>
+void exchange(Archive& archive, Object& pick) {
+    archive("object", pick.object);
+    archive("part", pick.part);
+    archive("part_index", pick.part_index);
+    archive("is_face", pick.is_face);
+    archive("element", pick.element);
+    archive("position", pick.position);
+    archive("depth", pick.depth);
+}
+
+/// Masks are made of it, by pixels of the picture.
+void check(const dataset::Bitmap& bitmap, const Vec2i& picture) {
+    const PixelRect& area = bitmap.area;
+    const auto is_within = [](int first, int count, int all) {
+        return count >= 0 && (count == 0 || (first >= 0 && first <= all - count));
+    };
+    if (is_within(area.x, area.width, picture.x()) && is_within(area.y, area.height, picture.y()) &&
+        bitmap.pixels.size() == size_t(area.width) * size_t(area.height))
+        return;
+    throw ArgumentError("pickle: Instance: expected masks within the picture, with a byte for each pixel");
+}
+
 nb::dict style_state(const Style& style) {
     nb::dict state;
     for (const Field& field : fields()) {
@@ -322,6 +384,23 @@ void bind_pickle(nb::class_<Automatic>& automatic) {
 void bind_pickle(nb::class_<Follow>& follow) {
     pickled::bind_state(
         follow, [](const Follow&) { return nb::dict(); }, [](const nb::dict&) { return Follow(); });
+}
+
+void bind_pickle(nb::class_<dataset::Instance>& instance) {
+    pickled::bind_state(instance, pickled::state_of<dataset::Instance>, [](const nb::dict& state) {
+        auto made = pickled::object_of<dataset::Instance>(state);
+        if (made.picture.minCoeff() < 0 || made.picture.maxCoeff() > max_image_side)
+            throw ArgumentError(
+                fmt::format("pickle: Instance: expected a picture of at most {} pixels, got {} x {}",
+                            max_image_side, made.picture.x(), made.picture.y()));
+        pickled::check(made.visible, made.picture);
+        pickled::check(made.amodal, made.picture);
+        return made;
+    });
+}
+
+void bind_pickle(nb::class_<app::Pick>& pick) {
+    pickled::bind_state(pick, pickled::state_of<app::Pick>, pickled::object_of<app::Pick>);
 }
 
 void refuse_pickle(const char* name) {

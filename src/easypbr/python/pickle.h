@@ -1,6 +1,9 @@
-// What pickle keeps of meshes and of what they are made of: everything but handles and caches.
+// What pickle keeps of meshes, of what they are made of, and of what is found in pictures: everything but
+// handles and caches.
 #pragma once
 
+#include "easypbr/app/picture.h"
+#include "easypbr/dataset/ground_truth.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/settings_value.h"
@@ -24,6 +27,8 @@ void bind_pickle(nb::class_<CameraPath>& path);
 void bind_pickle(nb::class_<Environment>& environment);
 void bind_pickle(nb::class_<Automatic>& automatic);
 void bind_pickle(nb::class_<Follow>& follow);
+void bind_pickle(nb::class_<dataset::Instance>& instance);
+void bind_pickle(nb::class_<app::Pick>& pick);
 
 /// Raises TypeError that says what can be pickled instead.
 [[noreturn]] void refuse_pickle(const char* name);

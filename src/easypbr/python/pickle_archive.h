@@ -55,6 +55,10 @@ class Saved {
     nb::object object_of(const std::array<double, 8>& values) {
         return nb::cast(std::vector<double>(values.begin(), values.end()));
     }
+    nb::object object_of(const std::vector<uint8_t>& bytes) {
+        if (bytes.empty()) return nb::none();
+        return nb::bytes(bytes.data(), bytes.size());
+    }
     template <class Scalar, int Rows, int Cols>
     requires(Rows > 0 && Cols > 0) nb::object object_of(const Eigen::Matrix<Scalar, Rows, Cols>& matrix) {
         return nb::cast(std::vector<double>(matrix.data(), matrix.data() + matrix.size()));
@@ -143,6 +147,11 @@ class Loaded {
     }
     void load(const nb::object& object, std::array<double, 8>& values, const char* name) {
         std::ranges::copy(numbers<8>(object, name), values.begin());
+    }
+    void load(const nb::object& object, std::vector<uint8_t>& values, const char*) {
+        const auto bytes = nb::cast<nb::bytes>(object);
+        const auto* const first = static_cast<const uint8_t*>(bytes.data());
+        values.assign(first, first + bytes.size());
     }
     template <class Scalar, int Rows, int Cols>
     requires(Rows > 0 && Cols > 0) void load(const nb::object& object,
