@@ -1,11 +1,14 @@
 """Arguments that several functions take, checked with a message of ours instead of the binding's."""
 
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from . import _easypbr
 from .errors import ArgumentError
+
+#: The largest number of an image of int32.
+_INT32 = 2**31 - 1
 
 
 def samples_of(samples: Any) -> int | None:
@@ -20,6 +23,33 @@ def samples_of(samples: Any) -> int | None:
     if isinstance(samples, bool) or not field.min <= number <= field.max:
         raise ArgumentError(f"samples: expected a whole number from {field.min:g} to {field.max:g}, got {samples!r}")
     return number
+
+
+def classes_of(classes: Any) -> dict[str, int]:
+    """Semantic ids by names; None: none."""
+    if classes is None:
+        return {}
+    if not isinstance(classes, Mapping):
+        raise ArgumentError(f"classes: expected a dict of whole numbers by names of objects, got {classes!r}")
+    made = {}
+    for name, value in classes.items():
+        if not isinstance(name, str):
+            raise ArgumentError(f"classes: expected names of objects, got {name!r}")
+        try:
+            number = operator.index(value)
+        except TypeError:
+            number = _INT32 + 1
+        if isinstance(value, bool) or not -_INT32 - 1 <= number <= _INT32:
+            raise ArgumentError(f"classes[{name!r}]: expected a whole number from {-_INT32 - 1} to {_INT32}, got {value!r}")
+        made[name] = number
+    return made
+
+
+def missing_names(wanted: Iterable[str], objects: Iterable[str]) -> list[str]:
+    """Names that no object has, and no instance of one: "object/node", "object:part", "object#2"."""
+    shown = tuple(objects)
+    starts = tuple(name + mark for name in shown for mark in "/:#")
+    return [name for name in wanted if name not in shown and not name.startswith(starts)]
 
 
 def real_of(name: str, value: Any, what: str = "a number") -> float:

@@ -1,6 +1,7 @@
 """Viewer: draws a scene."""
 
 import atexit
+import logging
 import os
 import threading
 import time
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
-from .arguments import real_of, samples_of
+from .arguments import classes_of, missing_names, real_of, samples_of
 from .cameras import set_camera
 from .conversions.maker import Maker
 from .errors import ArgumentError
@@ -49,6 +50,7 @@ class Viewer(Sharing):
         self._handle = _easypbr.ViewerHandle(self.scene._handle, device)
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
+        self._missing_classes: set[str] = set()
         self._thread: threading.Thread | None = None
         self._made_at = time.monotonic()
         self._init_callbacks()
@@ -240,15 +242,16 @@ class Viewer(Sharing):
         occlusion_backward, and "instances", a list of Instance. Of the background, where depth is 0, all but the image is 0
         and face_id -1; flow is 0 there while the camera moves, too.
 
-        `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids by the objects'
-        names. Flow needs the `next` or `previous` frame's moment(). Without `amodal` what is hidden of the instances is
-        not measured. `as_`: "numpy" or "torch", whose tensors are made on `device`: with "cuda", color, hdr, depth,
-        distance, position, normals, albedo, roughness, metallic, instance_id and (without labels of elements) semantic_id never
-        leave the GPU when OpenGL draws on it too (depth, distance and position then have the rasteriser's rounding); what else
-        is asked for is copied there."""
+        `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids (int32) by the objects'
+        names; a name that the scene does not have is logged as a warning, once. Flow needs the `next` or `previous` frame's
+        moment(). Without `amodal` what is hidden of the instances is not measured. `as_`: "numpy" or "torch", whose tensors
+        are made on `device`: with "cuda", color, hdr, depth, distance, position, normals, albedo, roughness, metallic,
+        instance_id and (without labels of elements) semantic_id never leave the GPU when OpenGL draws on it too (depth,
+        distance and position then have the rasteriser's rounding); what else is asked for is copied there."""
         if isinstance(names, str):
             names = [names]
         samples = samples_of(samples)
+        classes = self._checked_classes(classes)
         convert = converter(as_, device)
         if device != "cpu":
             return self._layers_on(device, names, size, samples, instances_by, classes, previous, next, amodal)
@@ -258,7 +261,7 @@ class Viewer(Sharing):
             size,
             samples,
             instances_by,
-            dict(classes or {}),
+            classes,
             previous,
             next,
             "instances" in names,
@@ -266,14 +269,23 @@ class Viewer(Sharing):
         )
         return {name: value if name == "instances" else convert(value) for name, value in data.items()}
 
+    def _checked_classes(self, classes: Mapping[str, int] | None) -> dict[str, int]:
+        """Of render_layers(), with a warning of names that the scene does not have: once for each."""
+        checked = classes_of(classes)
+        for name in missing_names(checked, self.scene.names()):
+            if name not in self._missing_classes:
+                self._missing_classes.add(name)
+                logging.getLogger("easypbr").warning("classes: the scene has no object %r", name)
+        return checked
+
     def _layers_on(self, device: str, names: Sequence[str], size: ArrayLike | None, samples: int | None, instances_by: str,
-                   classes: Mapping[str, int] | None, previous: "_easypbr.Moment | None", next: "_easypbr.Moment | None",
+                   classes: dict[str, int], previous: "_easypbr.Moment | None", next: "_easypbr.Moment | None",
                    amodal: bool) -> dict[str, Any]:
         """render_layers() with tensors of another device."""
         stays = [name for name in names if name in _easypbr.cuda_layer_names()]
         data = {}
         if check_device(device).type == "cuda" and stays:
-            raw = _easypbr.cuda_layers(self._handle, stays, size, samples, instances_by, dict(classes or {}))
+            raw = _easypbr.cuda_layers(self._handle, stays, size, samples, instances_by, classes)
             data = layers_of_targets(raw, stays, from_dlpack) if raw else {}
             stays = [name for name in stays if name in data]
         else:

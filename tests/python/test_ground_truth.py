@@ -284,3 +284,31 @@ def test_what_comes_near_is_not_clipped():
     moved(box, 0, 0, 3)
     view.annotations()
     assert view.settings.camera.near == first
+
+
+@pytest.mark.parametrize("id_", [2**31, -(2**31) - 1, 1.5, "1", None, True])
+def test_classes_out_of_range_are_named(view, id_):
+    # int32 has 2^31 numbers from 0 on, and as many below.
+    with pytest.raises(ArgumentError, match="classes\\['ball'\\]: expected a whole number from -2147483648 to 2147483647, got"):
+        view.render_layers(["semantic_id"], classes={"ball": id_})
+
+
+def test_classes_that_are_no_numbers_by_names_are_refused(view):
+    for classes in (["ball"], "ball", 3):
+        with pytest.raises(ArgumentError, match="classes: expected a dict"):
+            view.render_layers(["semantic_id"], classes=classes)
+    with pytest.raises(ArgumentError, match="classes: expected names of objects, got 1"):
+        view.annotations(classes={1: 1})
+
+
+def test_ends_of_the_range_of_classes_are_kept(view):
+    for id_ in (2**31 - 1, np.int64(-(2**31))):
+        data = view.render_layers(["semantic_id", "instances"], classes={"ball": id_})
+        assert data["instances"][0].semantic_id == id_ and (data["semantic_id"] == id_).any()
+
+
+def test_classes_of_no_object_are_a_warning_once(view, caplog):
+    view.scene.hide("cube")
+    for _ in range(2):
+        view.render_layers(["semantic_id"], classes={"ball": 1, "cube": 2, "ball/wheel": 3, "cube:door": 4, "bal": 5})
+    assert [record.getMessage() for record in caplog.records] == ["classes: the scene has no object 'bal'"]
