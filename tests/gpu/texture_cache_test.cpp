@@ -5,9 +5,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/log.h"
 
 namespace easypbr::gpu::texture_cache_test {
 namespace {
@@ -174,6 +178,37 @@ TEST(HostTextures, TypesOfTexelsHoldTheSame) {
     const native::Texture& light = cache.host(textures[2], TexelKind::color);
     EXPECT_EQ(texel(light, 0, 1, 0, 0, 0), uint32_t(std::lround(linear_from_srgb(188 / 255.0f) * 65535)));
     EXPECT_EQ(texel(light, 0, 1, 0, 0, 3), 128 * 257u);
+}
+
+/// What is said while textures are made.
+std::string warnings_of(const std::function<void()>& make) {
+    std::string text;
+    set_log_sink([&](LogLevel, std::string_view message) { text += std::string(message) + "\n"; });
+    make();
+    set_log_sink({});
+    return text;
+}
+
+// Of colours alone, not of alpha, once, with what holds them and the largest.
+TEST(HostTextures, ColorsAboveOneAreAWarning) {
+    Texture bright = grey_texture<float>(PixelType::f32, 7.5f, 1), covering = bright;
+    covering.image = grey_texture<float>(PixelType::f32, 1, 9).image;
+    const Texture codes = grey_texture<uint8_t>(PixelType::u8, 255, 255);
+    TextureCache cache;
+    EXPECT_EQ(warnings_of([&] {
+                  for (int i = 0; i < 2; ++i) cache.host(bright, TexelKind::color, "emissive_texture");
+              }),
+              "emissive_texture: colours above 1 were clamped to 1, the largest value is 7.5\n");
+    EXPECT_EQ(warnings_of([&] {
+                  cache.host(bright, TexelKind::data, "roughness_texture");
+                  cache.host(covering, TexelKind::covering_color, "base_color_texture");
+                  cache.host(codes, TexelKind::color, "base_color_texture");
+              }),
+              "");
+    bright.image = grey_texture<float>(PixelType::f32, 2, 1).image;
+    bright.path = "sun.exr";
+    EXPECT_EQ(warnings_of([&] { cache.host(bright, TexelKind::color, "emissive_texture"); }),
+              "emissive_texture 'sun.exr': colours above 1 were clamped to 1, the largest value is 2\n");
 }
 
 }  // namespace

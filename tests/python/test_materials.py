@@ -197,3 +197,29 @@ def test_texels_of_data_are_written_as_numbers(tmp_path, extension):
     for name, channel in (("roughness", 1), ("metallic", 2), ("normal", 0)):
         # 0.5 * 255 = 127.5 rounds away from zero.
         assert (getattr(read.material, f"{name}_texture")[..., channel] == 128).all(), name
+
+
+def test_floats_of_colours_are_linear_and_clamped_with_a_warning(caplog):
+    mesh = textured_square()
+    mesh.material.metallic = 0
+    mesh.material.base_color_texture = np.full((2, 2, 3), 0.5, np.float32)
+    # Held as code 188 (255 * 0.73536 = 187.52) of sRGB. The light of a step is there
+    # 2.4 / 1.055 * ((0.737 + 0.055) / 1.055)^1.4 / 255 = 1 / 168.
+    assert np.abs(centre_of(mesh, "albedo")[0] - 0.5).max() <= 1 / 168 and not caplog.records
+    mesh.material.base_color_texture = np.full((2, 2, 3), 128, np.uint8)
+    assert np.abs(centre_of(mesh, "albedo")[0] - 0.2159).max() <= 1 / 255
+    bright = np.full((2, 2, 3), 0.25, np.float32)
+    bright[0, 0] = 6.5
+    for name in ("base_color", "emissive", "roughness"):
+        mesh.material = Material()
+        setattr(mesh.material, f"{name}_texture", bright)
+        caplog.clear()
+        scene = easypbr.Scene()
+        scene.show(mesh, "square")
+        view = Viewer((16, 16), scene=scene)
+        for _ in range(2):
+            view.render(samples=1)
+        expected = [f"{name}_texture: colours above 1 were clamped to 1, the largest value is 6.5"]
+        assert [record.getMessage() for record in caplog.records] == (expected if name != "roughness" else [])
+    for name in ("base_color", "emissive"):
+        assert "floats are linear and clamped to 1" in getattr(Material, f"{name}_texture").__doc__

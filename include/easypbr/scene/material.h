@@ -98,21 +98,23 @@ struct Material {
     float anisotropy = 0;               ///< strength, 0 to 1
     float anisotropy_rotation_deg = 0;  ///< degrees, counter-clockwise from the tangent
 
-    Texture base_color_texture;  ///< sRGB; its alpha multiplies opacity; times color_factor()
+    // Texels are 0 to 1; f32 is clamped, with a warning for colours. Integers of colours are sRGB-encoded,
+    // f32 colours are linear. Other textures hold numbers, whatever their type.
+    Texture base_color_texture;  ///< colour; its alpha multiplies opacity; times color_factor()
     Texture metallic_texture;
     Texture roughness_texture;
     Texture normal_texture;  ///< tangent space, +Y up (OpenGL, glTF)
     Texture occlusion_texture;
-    Texture emissive_texture;  ///< sRGB
+    Texture emissive_texture;  ///< colour; the factor makes it brighter than 1
     Texture opacity_texture;   ///< used by alpha modes mask and blend
 
     Texture clearcoat_texture;
     Texture clearcoat_roughness_texture;
     Texture clearcoat_normal_texture;
-    Texture sheen_color_texture;  ///< sRGB
+    Texture sheen_color_texture;  ///< colour
     Texture sheen_roughness_texture;
     Texture specular_texture;
-    Texture specular_color_texture;  ///< sRGB
+    Texture specular_color_texture;  ///< colour
     Texture transmission_texture;
     Texture thickness_texture;
     Texture iridescence_texture;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -107,13 +108,31 @@ Image to_u8(const Image& image, TexelKind kind) {
     return kind == TexelKind::data ? data_to_u8(image) : easypbr::to_u8(image);
 }
 
+/// Of a f32 image without values that are no numbers.
+float largest_color(const Image& image) {
+    const size_t channels = size_t(image.channels()), colors = channels - size_t(has_alpha(image));
+    const auto values = image.pixels<float>();
+    float largest = 0;
+    for (size_t i = 0; i < values.size(); ++i)
+        if (i % channels < colors) largest = std::max(largest, values[i]);
+    return largest;
+}
+
+/// A texture in a warning.
+std::string name_of(const Texture& texture, std::string_view slot) {
+    return texture.path.empty() ? std::string(slot) : fmt::format("{} '{}'", slot, texture.path);
+}
+
 /// The image as u8, without values that are no numbers.
 Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
     if (image.type() != PixelType::f32) return to_u8(image, kind);
     Image valid = image;
     if (const size_t replaced = replace_non_finite(valid))
-        log_warning(fmt::format("texture '{}': {} values that are NaN or infinite were replaced by 0", name,
-                                replaced));
+        log_warning(fmt::format("{}: {} values that are NaN or infinite were replaced by 0", name, replaced));
+    // What is less than half a code above shows nowhere.
+    if (const float largest = kind == TexelKind::data ? 0 : largest_color(valid); largest > 1 + 0.5f / 255)
+        log_warning(
+            fmt::format("{}: colours above 1 were clamped to 1, the largest value is {:g}", name, largest));
     return to_u8(valid, kind);
 }
 
@@ -245,10 +264,11 @@ PooledVector<std::byte> all_levels(const Image& image, Wrap wrap, native::Textur
 }
 
 /// Fills in what does not depend on where the texels are.
-PooledVector<std::byte> host_texels(const Texture& texture, TexelKind kind, native::Texture& to) {
+PooledVector<std::byte> host_texels(const Texture& texture, TexelKind kind, const std::string& name,
+                                    native::Texture& to) {
     const Image* image = texture.image.get();
     Image changed;
-    if (image->type() != PixelType::u8) image = &(changed = to_valid_u8(*image, kind, texture.path));
+    if (image->type() != PixelType::u8) image = &(changed = to_valid_u8(*image, kind, name));
     while (std::max(image->width(), image->height()) > 1 << (native::Texture::most_levels - 1))
         image = &(changed = next_level(*image, kind));
     to.width = image->width();
@@ -301,11 +321,11 @@ gl::Texture make_texture(const Image& image, TexelKind kind, const std::string& 
 
 }  // namespace
 
-const gl::Texture& TextureCache::get(const Texture& texture, TexelKind kind) {
+const gl::Texture& TextureCache::get(const Texture& texture, TexelKind kind, std::string_view slot) {
     kind = kind_in(*texture.image, kind);
     const Key key{texture.image.get(), kind, texture.wrap_u, texture.wrap_v, texture.filter};
     const auto make = [&] {
-        Entry entry{texture.image, make_texture(*texture.image, kind, texture.path)};
+        Entry entry{texture.image, make_texture(*texture.image, kind, name_of(texture, slot))};
         // Anisotropic filtering is cheap on a GPU and costs several times the fetch on a CPU rasteriser.
         const float anisotropy = gl::Context::current().info().software ? 1.0f : 8.0f;
         entry.texture.sampling(
@@ -316,12 +336,12 @@ const gl::Texture& TextureCache::get(const Texture& texture, TexelKind kind) {
     return entries_.get(key, make).texture;
 }
 
-const native::Texture& TextureCache::host(const Texture& texture, TexelKind kind) {
+const native::Texture& TextureCache::host(const Texture& texture, TexelKind kind, std::string_view slot) {
     kind = kind_in(*texture.image, kind);
     const Key key{texture.image.get(), kind, texture.wrap_u, texture.wrap_v, texture.filter};
     const auto make = [&] {
         HostEntry entry{texture.image, {}, {}};
-        entry.texels = host_texels(texture, kind, entry.texture);
+        entry.texels = host_texels(texture, kind, name_of(texture, slot), entry.texture);
         entry.texture.texels = entry.texels.data();
         return entry;
     };

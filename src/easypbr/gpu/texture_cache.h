@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -23,12 +23,13 @@ enum class TexelKind : uint8_t {
     covering_color,  ///< the same, weighted by alpha: colours that alpha hides do not show at other levels
 };
 
-/// Textures by image, kind and sampling.
+/// Textures by image, kind and sampling. Warnings about texels come when a texture is made: `slot` names it
+/// there, as "roughness_texture".
 class TextureCache {
   public:
-    const gl::Texture& get(const Texture& texture, TexelKind kind);
+    const gl::Texture& get(const Texture& texture, TexelKind kind, std::string_view slot = "texture");
     /// The same for native shaders.
-    const native::Texture& host(const Texture& texture, TexelKind kind);
+    const native::Texture& host(const Texture& texture, TexelKind kind, std::string_view slot = "texture");
 
     /// Drops what was not asked for since the last call.
     void evict_unused() {

@@ -75,7 +75,10 @@ void texture_property(MaterialClass& material, const MaterialTexture& use) {
             m.change([&](Material& own) { own.*use.texture = texture; });
         },
         nb::for_setter(nb::arg("value").none()),
-        fmt::format("Assign a path or an array; reads as an array, or None. {}", use.doc).c_str());
+        fmt::format("Assign a path or an array; reads as an array, or None. {}{}", use.doc,
+                    use.use == TexelUse::color ? " Integers are sRGB; floats are linear and clamped to 1."
+                                               : " Texels of floats are 0 to 1.")
+            .c_str());
 }
 
 void set_alpha_mode(MaterialHandle& m, const std::string& mode) {

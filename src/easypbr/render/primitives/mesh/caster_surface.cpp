@@ -55,10 +55,11 @@ ShaderInputs caster_inputs(const DrawItem& item, gpu::Winding winding, gpu::Text
         if (!texture) return;
         const bool is_color = &texture == &m.base_color_texture;
         const gpu::TexelKind kind = texel_kind(item, texture, is_color ? TexelUse::color : TexelUse::number);
+        const std::string slot = name + "_texture";
         if (native)
-            values.set("u_" + name + "_texture", textures.host(texture, kind));
+            values.set("u_" + slot, textures.host(texture, kind, slot));
         else
-            values.set("u_" + name + "_texture", textures.get(texture, kind));
+            values.set("u_" + slot, textures.get(texture, kind, slot));
         values.set("u_" + name + "_uv", texture.uv_transform);
         if (!is_color)
             values.set("u_" + name + "_channel", Vec4(Vec4::Unit(std::clamp(texture.channel, 0, 3))));

@@ -18,12 +18,14 @@ namespace {
 struct TextureUse {
     explicit TextureUse(const MaterialTexture& row_)
         : row(row_),
-          sampler(fmt::format("u_{}_texture", row.name)),
-          define(ascii::to_upper(sampler.substr(2))) {
+          slot(fmt::format("{}_texture", row.name)),
+          sampler("u_" + slot),
+          define(ascii::to_upper(slot)) {
         if (row.use == TexelUse::number) channel = fmt::format("u_{}_channel", row.name);
     }
 
     const MaterialTexture& row;
+    std::string slot;  ///< the material's name for it
     std::string sampler, define;
     std::string channel;  ///< uniform that picks one channel; empty where all are read
 };
@@ -138,9 +140,9 @@ ShaderInputs material_inputs(const MaterialContext& context, const DrawItem& ite
         const Texture& texture = m.*use.row.texture;
         const gpu::TexelKind kind = texel_kind(item, texture, use.row.use);
         if (native)
-            values.set(use.sampler, textures.host(texture, kind));
+            values.set(use.sampler, textures.host(texture, kind, use.slot));
         else
-            values.set(use.sampler, textures.get(texture, kind));
+            values.set(use.sampler, textures.get(texture, kind, use.slot));
         if (!use.channel.empty()) values.set(use.channel, channel_mask(texture.channel));
         values.set("u_uv_transform[" + std::to_string(index) + "]", texture.uv_transform);
     });

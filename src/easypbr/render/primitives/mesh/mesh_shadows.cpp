@@ -205,7 +205,7 @@ void MeshShadows::use_own_shader(const ShadowLayer& layer, const DrawItem& item)
     program.set("u_root", share);
     const unsigned unit = material_inputs(core_model, item, textures_).bind(program);
     if (varies) {
-        textures_.get(m.transmission_texture, gpu::TexelKind::data).bind(unit);
+        textures_.get(m.transmission_texture, gpu::TexelKind::data, "transmission_texture").bind(unit);
         program.set("u_transmission_texture", int(unit));
         program.set("u_transmission_uv", m.transmission_texture.uv_transform);
         program.set("u_transmission_channel",
