@@ -312,3 +312,46 @@ def test_classes_of_no_object_are_a_warning_once(view, caplog):
     for _ in range(2):
         view.render_layers(["semantic_id"], classes={"ball": 1, "cube": 2, "ball/wheel": 3, "cube:door": 4, "bal": 5})
     assert [record.getMessage() for record in caplog.records] == ["classes: the scene has no object 'bal'"]
+
+
+#: What the first camera decides on by itself.
+GIVEN = {"lights.key.position": (3, 5, 4), "lights.fill.position": (-4, 2, 3), "lights.rim.position": (0, 4, -5),
+         "tonemap.exposure": 1.0}
+SMOOTH = {"load.crease_deg": 180.0}
+
+
+def folded(V, fold):
+    V = np.array(V)
+    V[[2, 5], 0], V[[2, 5], 2] = 1 - 0.8 * fold, -fold
+    return V
+
+
+def drawn(settings, *samples, refit=False, new=False):
+    """Layers of the last of samples (camera's position, fold) that one viewer draws: two squares at a common edge, one of which
+    is folded back."""
+    V = np.float32([[-1, -1, 0], [0, -1, 0], [1, -1, 0], [-1, 1, 0], [0, 1, 0], [1, 1, 0]])
+    F = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]
+    mesh = easypbr.Mesh(V, F)
+    scene = Scene()
+    view = Viewer((48, 36), settings, scene)
+    for position, fold in samples:
+        if new:
+            mesh = easypbr.Mesh(V, F)
+        mesh.V = folded(V, fold)
+        scene.show(mesh, "hinge")
+        if refit:
+            view.refit()
+        view.camera = Camera.look_at(position, (0, 0, 0))
+        data = view.render_layers(["color", "normal_world"], samples=1)
+    return data
+
+
+@pytest.mark.parametrize("settings, options, fold, same", [
+    ({}, {}, 0, False), (SMOOTH, {"refit": True}, 0, True), ({}, {"refit": True, "new": True}, 0, True), (GIVEN, {}, 1, True),
+])
+def test_samples_as_the_docs_have_them_do_not_depend_on_their_order(settings, options, fold, same):
+    """The first sample has another camera, and another fold unless that is 1."""
+    first, second = ((2, 0, 3), fold), ((1, 2, 3), 1)
+    alone, later = drawn(settings, second, **options), drawn(settings, first, second, **options)
+    for name, values in alone.items():
+        assert np.array_equal(values, later[name]) == same, name
