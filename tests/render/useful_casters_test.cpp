@@ -101,9 +101,10 @@ TEST(UsefulCasters, HaveRoomForPenumbrae) {
     const CasterSet casters({floor_of_20, ball_at(Vec3d(1, 0, 1), 1)});
     for (const float slope : {0.0f, 1.0f}) {
         const UsefulCasters useful =
-            useful_casters(sun_along(Vec3(slope, 0, -1)), casters, 0.25, std::nullopt);
-        const double half = 0.25 * 2 * std::hypot(1, double(slope)) / widest_filter / 2;
-        EXPECT_LT((useful.bounds.min() - Vec3d(1 - half, -half, 0)).norm(), 1e-6) << slope;  // of floats
+            useful_casters(sun_along(Vec3(slope, 0, -1)), casters, 0.24f, std::nullopt);
+        const double half = (slope > 0 ? 1 : 0.5) / widest_filter / 2;
+        EXPECT_LT((useful.bounds.min() - Vec3d(1 - half, -half, 0)).norm(), 1e-6)
+            << slope;  // of single precision
         EXPECT_LT((useful.bounds.max() - Vec3d(1 + half, half, 2)).norm(), 1e-6) << slope;
     }
     // 4 above the ball's top, whose penumbra on the floor is as large as half the lamp.

@@ -72,8 +72,8 @@ double longest_way(const ResolvedLight& light, const Box3d& box, const FacePlane
                      : std::numeric_limits<double>::infinity();
 }
 
-/// No less than the radius of the widest penumbra of a light at this distance behind casters within a box.
-/// Its extent is taken for the next power of two, so that maps stay while a light grows.
+/// No less than the radius of the widest penumbra of a light at this distance behind casters within a box. Of
+/// the powers of two, so that maps stay while a light grows.
 double widest_penumbra(const ResolvedLight& light, double extent, const Box3d& box, double distance) {
     if (!(extent > 0)) return 0;
     double part = extent;
@@ -81,7 +81,7 @@ double widest_penumbra(const ResolvedLight& light, double extent, const Box3d& b
         const double nearest = std::sqrt(box.squaredExteriorDistance(light.position));
         part = extent < nearest ? extent / nearest : 1;
     }
-    return distance * std::exp2(std::ceil(std::log2(part)));
+    return std::exp2(std::ceil(std::log2(distance * part)));
 }
 
 bool lies_on(const CasterExtent& caster, const FacePlane& plane, const FacePlane& ground) {
