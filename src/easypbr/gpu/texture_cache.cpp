@@ -104,8 +104,8 @@ gl::Wrapping wrapping(Wrap wrap) {
 }
 
 /// Only colours have the curve of sRGB.
-Image to_u8(const Image& image, TexelKind kind) {
-    return kind == TexelKind::data ? data_to_u8(image) : easypbr::to_u8(image);
+Image texels_of(const Image& image, TexelKind kind) {
+    return kind == TexelKind::data ? data_to_u8(image) : to_u8(image);
 }
 
 /// Of a f32 image without values that are no numbers.
@@ -125,7 +125,7 @@ std::string name_of(const Texture& texture, std::string_view slot) {
 
 /// The image as u8, without values that are no numbers.
 Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
-    if (image.type() != PixelType::f32) return to_u8(image, kind);
+    if (image.type() != PixelType::f32) return texels_of(image, kind);
     Image valid = image;
     if (const size_t replaced = replace_non_finite(valid))
         log_warning(fmt::format("{}: {} values that are NaN or infinite were replaced by 0", name, replaced));
@@ -133,7 +133,7 @@ Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
     if (const float largest = kind == TexelKind::data ? 0 : largest_color(valid); largest > 1 + 0.5f / 255)
         log_warning(
             fmt::format("{}: colours above 1 were clamped to 1, the largest value is {:g}", name, largest));
-    return to_u8(valid, kind);
+    return texels_of(valid, kind);
 }
 
 native::Texture::Wrap host_wrapping(Wrap wrap) {

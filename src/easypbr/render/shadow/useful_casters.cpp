@@ -38,7 +38,7 @@ Heights heights_of(const Box3d& box, const FacePlane& plane) {
 }
 
 /// All of a light that is not directional lies within a sphere of this radius around its position.
-double radius_of(const ResolvedLight& light) {
+double bounding_radius(const ResolvedLight& light) {
     if (light.type != LightType::rectangle) return light.radius;
     const EmitterAxes axes = emitter_axes(light);
     return axes.x.norm() + axes.y.norm();
@@ -53,7 +53,7 @@ double elevation_of(const ResolvedLight& light, const FacePlane& plane) {
 
 /// How far above a plane the lowest point of a light is that is not directional.
 double height_of(const ResolvedLight& light, const FacePlane& plane) {
-    return plane.normal.dot(light.position) - plane.offset - radius_of(light);
+    return plane.normal.dot(light.position) - plane.offset - bounding_radius(light);
 }
 
 /// Whether all of a light lies above a plane.
@@ -68,7 +68,7 @@ double longest_way(const ResolvedLight& light, const Box3d& box, const FacePlane
     const double above = height_of(light, plane) - height;
     const Vec3d farthest =
         (box.min() - light.position).cwiseAbs().cwiseMax((box.max() - light.position).cwiseAbs());
-    return above > 0 ? height * std::hypot(1, (farthest.norm() + radius_of(light)) / above)
+    return above > 0 ? height * std::hypot(1, (farthest.norm() + bounding_radius(light)) / above)
                      : std::numeric_limits<double>::infinity();
 }
 
