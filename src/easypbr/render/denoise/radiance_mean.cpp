@@ -50,7 +50,7 @@ bool may_end(int frames) {
     return frames >= 4 && std::popcount(unsigned(frames) & ~(std::bit_floor(unsigned(frames)) >> 1)) == 1;
 }
 
-/// A silhouette is smooth with so many.
+/// A silhouette is smooth with so many, and so is what a lens or motion blurs.
 constexpr int frames_of_silhouettes = 16;
 
 /// Of fewer pixels of a tile the noise is not known: they are of a silhouette.
@@ -77,9 +77,12 @@ class RadianceMean::FrameSurfaces {
         row_.over_nothing = !frame.resolved->settings.background.shows_environment();
     }
 
-    bool is_noisy(int x, int y) const {
+    bool is_seen(int x, int y) const {
         const float* depth = depth_.at(x, y);
-        return depth && *depth > 0 && render::is_noisy(uint8_t(*material_.at(x, y) >> 24));
+        return depth && *depth > 0;
+    }
+    bool is_noisy(int x, int y) const {
+        return is_seen(x, y) && render::is_noisy(uint8_t(*material_.at(x, y) >> 24));
     }
 
     /// That which is certain; see LayerGuides.
@@ -162,6 +165,7 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     open_.clear();
     weights_.clear();
     notes_surfaces_ = with_surfaces;
+    varies_ = false;
     beside_.begin(size);
     noisy_.begin(size);
     for (Target* target : {&sample_, &light_})
@@ -170,6 +174,7 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
 
 void RadianceMean::begin_frame(const Frame& frame, bool see_through) {
     begin_weights();
+    if (frame.motion || frame.through_lens || !open_.empty()) varies_ = true;
     ++frames_;
     light_.release();
     if (notes_surfaces_ && see_through && !frame.resolved->settings.background.shows_environment())
@@ -208,8 +213,14 @@ void RadianceMean::begin_weights() {
 
 void RadianceMean::add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces) {
     bool is_noisy = surfaces && noisy_.of(tile);
-    if (surfaces && !is_noisy)
-        each(area, [&](size_t, int x, int y) { is_noisy = is_noisy || surfaces->is_noisy(x, y); });
+    if (surfaces && !is_noisy) {
+        bool is_seen = false;
+        each(area, [&](size_t, int x, int y) {
+            is_seen = is_seen || surfaces->is_seen(x, y);
+            is_noisy = is_noisy || surfaces->is_noisy(x, y);
+        });
+        if (is_seen && !is_noisy) varies_ = true;
+    }
     if (!is_noisy) return add_beside(tile, area);
     native::NoisyTile& noisy = noisy_.make(tile);
     const HeldPixels<Vec4> sample(sample_);
@@ -296,17 +307,43 @@ RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) cons
     return error;
 }
 
-float RadianceMean::noise(float exposure) const {
-    std::vector<float> errors(tiles_.count(), -1.0f);
-    parallel_for(errors.size(), 64, [&](size_t tile) {
-        const TileError error = error_of(tile, exposure);
-        if (error.pixels >= least_pixels) errors[tile] = error.mean;
-    });
-    std::erase(errors, -1.0f);
-    if (errors.empty()) return 0;
-    const auto at = errors.begin() + std::ptrdiff_t(double(errors.size() - 1) * 0.95);
+bool RadianceMean::is_edge(const TileError& error) {
+    return error.pixels > 0 && (error.has_silhouette || error.pixels < least_pixels);
+}
+
+std::vector<float> RadianceMean::mean_errors(const std::vector<TileError>& tiles) {
+    std::vector<float> means;
+    float small_sum = 0;
+    int small_pixels = 0;
+    bool has_small = false;
+    for (const TileError& tile : tiles) {
+        if (tile.pixels >= least_pixels) {
+            means.push_back(tile.mean);
+            continue;
+        }
+        small_sum += tile.mean * float(tile.pixels);
+        small_pixels += tile.pixels;
+        if (small_pixels < least_pixels) continue;
+        means.push_back(small_sum / float(small_pixels));
+        has_small = true;
+        small_sum = 0;
+        small_pixels = 0;
+    }
+    // Fewer are left than tell the noise: they count where they are all there is of their kind.
+    if (small_pixels > 0 && !has_small) means.push_back(small_sum / float(small_pixels));
+    return means;
+}
+
+bool RadianceMean::is_good(float noise, float exposure) const {
+    std::vector<TileError> tiles(tiles_.count());
+    parallel_for(tiles.size(), 64, [&](size_t tile) { tiles[tile] = error_of(tile, exposure); });
+    if (frames_ < frames_of_silhouettes && (varies_ || std::ranges::any_of(tiles, is_edge))) return false;
+    std::vector<float> errors = mean_errors(tiles);
+    if (errors.empty()) return true;
+    // 95 of 100 of them, rounded up: of fewer than 20 all.
+    const auto at = errors.begin() + std::ptrdiff_t((errors.size() * 19 + 19) / 20 - 1);
     std::ranges::nth_element(errors, at);
-    return *at;
+    return *at < noise;
 }
 
 void RadianceMean::end_tiles(float noise, float exposure) {
@@ -314,8 +351,7 @@ void RadianceMean::end_tiles(float noise, float exposure) {
     parallel_for(tiles_.count(), 64, [&](size_t tile) {
         if (tiles_.has_ended(tile)) return;
         const TileError error = error_of(tile, exposure);
-        const bool is_edge = error.has_silhouette || error.pixels < least_pixels;
-        if (error.pixels == 0 || (is_edge && frames_ < frames_of_silhouettes)) return;
+        if (error.pixels == 0 || (is_edge(error) && frames_ < frames_of_silhouettes)) return;
         if (error.quadratic < noise) tiles_.end(tile, frames_);
     });
 }

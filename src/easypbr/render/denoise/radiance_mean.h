@@ -1,6 +1,7 @@
 // The mean of frames of noisy light, in linear radiance, and how it is denoised.
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include "easypbr/core/memory_pool.h"
@@ -17,7 +18,7 @@ namespace easypbr::render {
 /// of a surface that shows its own colour.
 class RadianceMean {
   public:
-    /// Forgets all frames. `with_surfaces`: they are taken note of, for mean() with a denoiser and noise().
+    /// Forgets all frames. `with_surfaces`: they are taken note of, for mean() with a denoiser and is_good().
     void begin(Vec2i size, bool with_surfaces);
 
     /// Adds a frame's overlay, RGBA16F, before begin_frame(): each frame counts by what its overlay leaves of
@@ -33,9 +34,11 @@ class RadianceMean {
     void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, Transfers& transfers);
     void end_frame();
 
-    /// Of the frames so far: the standard error of what is displayed with an exposure, of white, that 95 of
-    /// 100 squares of 16 x 16 pixels are below; 0 where no surface is. Surfaces must be taken note of.
-    float noise(float exposure) const;
+    /// Whether the frames so far are enough: in 95 of 100 squares of 16 x 16 pixels the standard error of
+    /// what is displayed with an exposure is below `noise`, a part of white, and what changes from frame to
+    /// frame besides, as silhouettes do, has as many frames as make it smooth. True where nothing is to be
+    /// seen. Surfaces must be taken note of.
+    bool is_good(float noise, float exposure) const;
 
     /// Ends tiles whose pixels' standard error is below `noise` by its quadratic mean, which few bright
     /// pixels raise more than the mean that noise() is of. Asks for surfaces, too. Does so after few frames
@@ -74,7 +77,11 @@ class RadianceMean {
         int pixels = 0;
         bool has_silhouette = false;  ///< some frames show a surface at a pixel, and others none
     };
+    /// Some pixels of a tile are at a silhouette.
+    static bool is_edge(const TileError& error);
     TileError error_of(size_t tile, float exposure) const;
+    /// The mean errors of tiles; those of few pixels are taken together until they are enough.
+    static std::vector<float> mean_errors(const std::vector<TileError>& tiles);
     void write_noisy_light();
     bool has_noisy_coverage() const;
     void write_noisy_coverage();
@@ -90,6 +97,8 @@ class RadianceMean {
     int frames_ = 0;
     SampledTiles tiles_;
     bool notes_surfaces_ = false;
+    /// Frames differ by what is not known to be noise: unlit surfaces, lines, motion, a lens.
+    std::atomic<bool> varies_ = false;
     /// Sums of all frames: of pixels with noise, and beside them of what is not noisy.
     TileValues<native::NoisyTile> noisy_;
     struct Sum {

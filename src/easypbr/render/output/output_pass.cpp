@@ -255,8 +255,9 @@ void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, c
     mean.end_frame();
 }
 
-float OutputPass::noise(const Frame& frame) const {
-    return frame.averages_radiance ? mean_.noise(exposure_of(frame, Encoding::srgb8)) : 0;
+bool OutputPass::is_good(const Frame& frame) const {
+    const float noise = frame.resolved->settings.image.noise;
+    return noise > 0 && frame.averages_radiance && mean_.is_good(noise, exposure_of(frame, Encoding::srgb8));
 }
 
 void OutputPass::end_tiles(const Frame& frame) {

@@ -34,8 +34,9 @@ class OutputPass {
     void accumulate_layers(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
     /// That mean, denoised as the picture is. It lives until the next call.
     LitPicture layers_mean(const Frame& frame);
-    /// See RadianceMean::noise(); 0 where frames are not of noisy light.
-    float noise(const Frame& frame) const;
+    /// Whether the frames of noisy light are as good as image.noise asks; false where they are not of such
+    /// light, or nothing is asked. See RadianceMean::is_good().
+    bool is_good(const Frame& frame) const;
     /// Ends tiles of noisy light that are as good as image.noise asks. See RadianceMean::end_tiles().
     void end_tiles(const Frame& frame);
     /// Which still get samples.

@@ -185,13 +185,11 @@ int Renderer::add_sample() {
 bool Renderer::is_complete() const {
     const Picture& picture = *picture_;
     if (picture.frames >= picture.shot.sample_count) return true;
-    const ImageSettings& image = picture.resolved.settings.image;
     // The next frame takes as long as the others did.
-    const double budget = image.time_budget * picture.options.time_share,
+    const double budget = picture.resolved.settings.image.time_budget * picture.options.time_share,
                  next = picture.seconds * (1 + 1.0 / picture.frames);
     if (budget > 0 && next > budget) return true;
-    return image.noise > 0 && picture.frames >= least_frames_for_noise && picture.contents.paths &&
-           output_.noise(picture.frame) < image.noise;
+    return picture.frames >= least_frames_for_noise && output_.is_good(picture.frame);
 }
 
 Frame Renderer::next_frame(const Picture& picture, const Shot& shot, Camera camera, const DrawList& list) {
