@@ -195,5 +195,24 @@ TEST(Lighting, ExposureUndoesIntensity) {
     EXPECT_TRUE(std::ranges::equal(a.bytes(), b.bytes()));
 }
 
+// Exposed to 0.5, which is 188 in sRGB; 1 for roundings, of half precision among them.
+TEST(Lighting, FaintEmissionIsSeen) {
+    for (const float emission : {1.1e-5f, 0.9e-5f, 1e-6f}) {
+        Material faint;
+        faint.base_color = Vec3::Zero();
+        faint.emissive = Vec3::Constant(emission);
+        faint.specular = 0;
+        Scene scene;
+        scene.show(facing_square(20, faint), "wall");
+        app::Session session = plain_session(scene, 16);
+        look_from(session, Vec3d(0, 0, 4));
+        session.settings().tonemap.exposure = 0.5f / emission;
+        for (const bool paths : {false, true}) {
+            session.settings().path.enabled = paths;
+            EXPECT_NEAR(session.render({std::nullopt, 4}).at<uint8_t>(8, 8)[1], 188, 1) << emission << paths;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::lighting_test

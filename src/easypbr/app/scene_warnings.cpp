@@ -9,6 +9,7 @@
 
 #include "easypbr/app/font.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/luminance.h"
 #include "easypbr/scene/auto_parameters.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
@@ -57,7 +58,7 @@ std::string shaders_text(const SceneSnapshot& scene, const Settings& settings) {
 /// Whether an object is seen without light.
 bool shines(const Object& object, const Style& overrides) {
     const auto is_bright = [](const Material& material) {
-        return material.unlit || !material.emissive.isZero();
+        return material.unlit || !is_black(material.emissive);
     };
     return !resolve_style(*object.mesh, overrides).lit.value_or(true) ||
            std::ranges::any_of(object.mesh->materials, is_bright);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/luminance.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr {
@@ -185,7 +186,7 @@ Vec3 Material::color_factor(bool with_colors, bool with_coordinates) const {
 }
 
 bool Material::is_extended() const {
-    return clearcoat > 0 || !sheen_color.isZero() || names_ior() || specular != 1 ||
+    return clearcoat > 0 || !is_black(sheen_color) || names_ior() || specular != 1 ||
            specular_color != Vec3::Ones() || transmission > 0 || iridescence > 0 || anisotropy > 0 ||
            specular_texture || specular_color_texture;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/render/drawables/drawable_scene.h"
 #include "easypbr/render/frame/extensions.h"
 #include "easypbr/render/frame/surface_kind.h"
@@ -38,7 +39,7 @@ struct DrawItem {
     const MeshData& mesh() const { return data ? *data : *object->mesh; }
     /// The factor of its pose on lengths: the cube root of that on volumes.
     double scale() const;
-    bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
+    bool emits() const { return material.unlit || !is_black(material.emissive) || material.shader; }
     /// Colours by the data of vertices or faces. Points may have those of a texture besides; lines have none.
     bool has_own_colors() const { return with_colors || colors.values; }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }

@@ -1,4 +1,5 @@
 #include "easypbr/core/color.h"
+#include "easypbr/core/luminance.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/scene/settings.h"
 
@@ -85,7 +86,7 @@ Material overridden(const Material& material, const MaterialSettings& settings, 
         if (!settings.roughness.value()) m.roughness = 1;
     });
     replace(m.emissive_texture, textures.emissive_texture, [&] {
-        if (m.emissive.isZero()) m.emissive = Vec3::Ones();
+        if (is_black(m.emissive)) m.emissive = Vec3::Ones();
     });
     replace(m.normal_texture, textures.normal_texture, [] {});
     replace(m.occlusion_texture, textures.occlusion_texture, [] {});

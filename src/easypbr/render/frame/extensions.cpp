@@ -1,12 +1,14 @@
 #include "easypbr/render/frame/extensions.h"
 
+#include "easypbr/core/luminance.h"
+
 namespace easypbr::render {
 
 ExtensionSet extensions_of(const Material& m) {
     if (m.unlit || !m.is_extended()) return 0;
     ExtensionSet set = dielectric_bit;
     if (m.clearcoat > 0) set |= clearcoat_bit;
-    if (!m.sheen_color.isZero()) set |= sheen_bit;
+    if (!is_black(m.sheen_color)) set |= sheen_bit;
     if (m.transmission > 0) set |= transmission_bit;
     if (m.iridescence > 0) set |= iridescence_bit;
     if (m.anisotropy > 0) set |= anisotropy_bit;

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/luminance.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/assimp/message.h"
@@ -82,7 +83,7 @@ class MessageMaterialReader {
         if (out.opacity_texture) out.alpha_mode = AlphaMode::mask;
         // Old formats leave the factor black where a texture stands.
         if (out.base_color_texture && out.base_color.isZero()) out.base_color.setOnes();
-        if (out.emissive_texture && out.emissive.isZero()) out.emissive.setOnes();
+        if (out.emissive_texture && is_black(out.emissive)) out.emissive.setOnes();
         return out;
     }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/gltf/gltf_extensions.h"
 
@@ -314,7 +315,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
             e["clearcoatNormalTexture"]["scale"] = material.clearcoat_normal_scale;
         content_.extend(json, khr_clearcoat) = std::move(e);
     }
-    if (!material.sheen_color.isZero()) {
+    if (!is_black(material.sheen_color)) {
         OrderedJson e = {{"sheenColorFactor", color_json(material.sheen_color)},
                          {"sheenRoughnessFactor", material.sheen_roughness}};
         add_texture(e, "sheenColorTexture", material.sheen_color_texture, TexelUse::color);

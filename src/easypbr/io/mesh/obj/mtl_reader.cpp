@@ -10,6 +10,7 @@
 
 #include "easypbr/core/ascii.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/luminance.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/io/mesh/texture_mapping.h"
 #include "easypbr/io/source/text_scanner.h"
@@ -302,7 +303,7 @@ class MtlParser {
         m.base_color = m.base_color_texture && diffuse.isZero() ? Vec3(1, 1, 1) : diffuse;
         m.base_color_given = entry_->diffuse.has_value();
         const Vec3 emission = entry_->emission.value_or(Vec3(0, 0, 0));
-        m.emissive = m.emissive_texture && emission.isZero() ? Vec3(1, 1, 1) : emission;
+        m.emissive = m.emissive_texture && is_black(emission) ? Vec3(1, 1, 1) : emission;
         m.metallic = std::clamp(entry_->metallic.value_or(m.metallic_texture ? 1.0f : 0.0f), 0.0f, 1.0f);
         m.roughness = std::clamp(roughness(), 0.0f, 1.0f);
         m.opacity = std::clamp(opacity(), 0.0f, 1.0f);
