@@ -32,8 +32,8 @@ void add_image(Table& table) {
         "take all samples.",
         "", {0, 1}));
     table.push_back(make("image.time_budget", EASYPBR_AT(image.time_budget),
-                         "Time after which an image takes no further sample; the first is always taken. 0 is "
-                         "unlimited.",
+                         "Time after which an image takes no further sample; the first is always taken, and "
+                         "does not count as the length of others. 0 is unlimited.",
                          "seconds", {0, 1e6}));
     table.push_back(
         make("image.antialias", EASYPBR_AT(image.antialias),

@@ -10,6 +10,7 @@
 #include "easypbr/core/step_progress.h"
 #include "easypbr/core/stopwatch.h"
 #include "easypbr/gl/pace.h"
+#include "easypbr/render/pipeline/frame_times.h"
 #include "easypbr/render/pipeline/kept_surfaces.h"
 #include "easypbr/scene/resolve.h"
 
@@ -65,7 +66,7 @@ struct Renderer::Picture {
     Frame frame;                   ///< drawn last
     LitPicture lit;                ///< of that frame
     int frames = 0;                ///< so far
-    double seconds = 0;            ///< that the frames took so far
+    FrameTimes times;              ///< of those
     bool with_exact = false;       ///< colours of tables, which nothing may mix with others
     bool averages_layers = false;  ///< before those colours
     bool ends_tiles = false;       ///< each once its light is good enough
@@ -175,9 +176,10 @@ void Renderer::prepare(Picture& picture) {
 
 int Renderer::add_sample() {
     Picture& picture = *picture_;
-    const Stopwatch watch(picture.seconds);
+    const Timer timer;
     draw_sample(picture);
     if (picture.averages_layers) draw_layers_before_exact(picture);
+    picture.times.add(timer.seconds());
     ++picture.frames;
     return picture.frames;
 }
@@ -185,10 +187,8 @@ int Renderer::add_sample() {
 bool Renderer::is_complete() const {
     const Picture& picture = *picture_;
     if (picture.frames >= picture.shot.sample_count) return true;
-    // The next frame takes as long as the others did.
-    const double budget = picture.resolved.settings.image.time_budget * picture.options.time_share,
-                 next = picture.seconds * (1 + 1.0 / picture.frames);
-    if (budget > 0 && next > budget) return true;
+    const double budget = picture.resolved.settings.image.time_budget * picture.options.time_share;
+    if (budget > 0 && !picture.times.has_time(budget)) return true;
     return picture.frames >= least_frames_for_noise && output_.is_good(picture.frame);
 }
 
