@@ -200,5 +200,43 @@ TEST(Frame, JitterIsCentred) {
     }
 }
 
+double halton(int index, int base) {
+    double value = 0, scale = 1;
+    for (int i = index; i > 0; i /= base) {
+        scale /= base;
+        value += scale * (i % base);
+    }
+    return value;
+}
+
+int rank_of(int index, int count, int base) {
+    int rank = 0;
+    for (int i = 0; i < count; ++i) rank += halton(i, base) < halton(index, base);
+    return rank;
+}
+
+// Ranks by digits are those of a search through all frames, and means that are kept are those of a sum.
+TEST(Frame, PlacesAreThoseOfTheirDefinitions) {
+    for (const int count : {1, 2, 7, 49, 50, 125, 300}) {
+        Vec2d jitters(0, 0);
+        for (int i = 1; i <= count; ++i) jitters += Vec2d(halton(i, 2), halton(i, 3)) / count;
+        Vec2d places(0, 0);
+        for (int i = 0; i < count; ++i) {
+            EXPECT_EQ(render::jitter_of(i, count), Vec2d(halton(i + 1, 2), halton(i + 1, 3)) - jitters);
+            EXPECT_EQ(render::shutter_time(i, count, 1), 1 - (1 - (rank_of(i, count, 7) + 0.5) / count));
+            // The spiral's point of this rank, moved by a mean that all share.
+            const double angle = rank_of(i, count, 5) * pi * (3 - std::sqrt(5.0));
+            const double radius = std::sqrt((rank_of(i, count, 5) + 0.5) / count);
+            const Vec2d moved = radius * Vec2d(std::cos(angle), std::sin(angle));
+            const Vec2d first = std::sqrt(0.5 / count) * Vec2d(1, 0);
+            EXPECT_LT(
+                (render::lens_position(i, count) - render::lens_position(0, count) - (moved - first)).norm(),
+                1e-12);
+            places += render::lens_position(i, count);
+        }
+        EXPECT_LT(places.norm(), 1e-12 * count);
+    }
+}
+
 }  // namespace
 }  // namespace easypbr::gbuffer_test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/core/recent_values.h"
 #include "easypbr/render/frame/screen_shader.h"
 #include "easypbr/scene/resolve.h"
 
@@ -22,11 +23,22 @@ double halton(int index, int base) {
 /// Another base than those of the pixel's offsets, so that what a frame samples has nothing to do with where
 /// in the pixel it looks.
 int rank_of(int index, int count, int base) {
-    const double own = halton(index, base);
-    int rank = 0;
-    for (int i = 0; i < count; ++i) rank += halton(i, base) < own;
-    return rank;
+    // Smaller are those with the same last digits, however many, before which stands a smaller one.
+    int64_t rank = 0, last_digits = 0, step = 1;
+    for (int64_t rest = index; step < count; rest /= base, step *= base) {
+        for (int64_t digit = 0; digit < rest % base; ++digit) {
+            const int64_t first = last_digits + digit * step, apart = step * base;
+            if (first < count) rank += (count - 1 - first) / apart + 1;
+        }
+        last_digits += rest % base * step;
+    }
+    return int(rank);
 }
+
+using RecentMeans = RecentValues<int, Vec2d>;
+
+/// So many pictures of different numbers of samples are drawn by turns.
+constexpr size_t most_means = 16;
 
 /// Screen rectangle of the bounds' corners, one pixel of margin; the whole picture when a corner is behind
 /// the camera.
@@ -50,9 +62,14 @@ PixelRect covered_rect(const Box3d& bounds, const Mat4d& clip_from_world, Vec2i 
 }  // namespace
 
 Vec2d jitter_of(int index, int count) {
-    Vec2d mean(0, 0);
-    for (int i = 1; i <= count; ++i) mean += Vec2d(halton(i, 2), halton(i, 3)) / count;
-    return Vec2d(halton(index + 1, 2), halton(index + 1, 3)) - mean;
+    static RecentMeans means(most_means);
+    const auto point = [](int k) { return Vec2d(halton(k + 1, 2), halton(k + 1, 3)); };
+    const Vec2d mean = means.get(count, [&] {
+        Vec2d sum(0, 0);
+        for (int k = 0; k < count; ++k) sum += point(k) / count;
+        return sum;
+    });
+    return point(index) - mean;
 }
 
 double shutter_time(int index, int count, double shutter) {
@@ -64,8 +81,12 @@ Vec2d lens_position(int index, int count) {
         const double angle = k * pi * (3 - std::sqrt(5.0));
         return Vec2d(std::sqrt((k + 0.5) / count) * Vec2d(std::cos(angle), std::sin(angle)));
     };
-    Vec2d mean(0, 0);
-    for (int k = 0; k < count; ++k) mean += point(k) / count;
+    static RecentMeans means(most_means);
+    const Vec2d mean = means.get(count, [&] {
+        Vec2d sum(0, 0);
+        for (int k = 0; k < count; ++k) sum += point(k) / count;
+        return sum;
+    });
     return point(rank_of(index, count, 5)) - mean;
 }
 
