@@ -1,6 +1,7 @@
 // Pictures that end before they have all their samples.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "render_test.h"
@@ -140,6 +141,38 @@ TEST(EarlyEnd, PicturesOfNothingEndAtOnce) {
     session.settings().camera.target = Vec3d(0, 0, 10);
     session.settings().image.noise = 0.01f;
     EXPECT_EQ(refined(session, 64).second, 4);
+}
+
+/// Where the middle of what is seen lies, in pixels.
+Vec2d centroid(const Image& image) {
+    Vec2d sum(0, 0);
+    double all = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const double alpha = image.at<uint8_t>(x, y)[3];
+            sum += alpha * Vec2d(x, y);
+            all += alpha;
+        }
+    return sum / all;
+}
+
+// Wherever a picture ends it is in its place. 0.05 of a pixel: edges of 20 pixels are crossed by few rows of
+// samples.
+TEST(EarlyEnd, DoesNotShiftPictures) {
+    Scene scene;
+    scene.show(make_box(), "box");
+    app::Session session = plain_session(scene);
+    look_from(session, Vec3d(2.1, 1.3, 3.2), 40);
+    session.settings().image.time_budget = 1e6f;
+    std::map<int, Vec2d> centroids;
+    for (int frames = 0; frames < 1024;) {
+        const auto done = session.refine({std::nullopt, 1024});
+        frames = done.frames;
+        if (frames == 4 || frames == 8 || frames == 16 || frames == 1024)
+            centroids[frames] = centroid(done.drawn.picture());
+    }
+    for (const int frames : {4, 8, 16})
+        EXPECT_LT((centroids.at(frames) - centroids.at(1024)).cwiseAbs().maxCoeff(), 0.05) << frames;
 }
 
 }  // namespace

@@ -200,6 +200,20 @@ TEST(Frame, JitterIsCentred) {
     }
 }
 
+// After any even number of frames, and after all.
+TEST(Frame, PairedJitterIsCentred) {
+    for (const int count : {1, 2, 15, 64}) {
+        Vec2d sum(0, 0);
+        for (int i = 0; i < count; ++i) {
+            const Vec2d j = render::paired_jitter_of(i, count);
+            EXPECT_LE(j.cwiseAbs().maxCoeff(), 0.5);
+            sum += j;
+            const bool is_even = i % 2 == 1 || i == count - 1;
+            EXPECT_LT(is_even ? sum.norm() : 0, 1e-12) << i << " of " << count;
+        }
+    }
+}
+
 double halton(int index, int base) {
     double value = 0, scale = 1;
     for (int i = index; i > 0; i /= base) {

@@ -72,6 +72,16 @@ Vec2d jitter_of(int index, int count) {
     return point(index) - mean;
 }
 
+Vec2d paired_jitter_of(int index, int count) {
+    if (index == count - 1 && count % 2 == 1) return {0, 0};
+    // From here on the first 4, 8, 16, ... points tell best what part of a pixel is on one side of a line.
+    constexpr double first_x = 0.25, first_y = 0.075, plastic = 1.32471795724474602596;
+    const int pair = index / 2;
+    const auto wrapped = [](double x) { return x - std::floor(x + 0.5); };
+    const Vec2d point(wrapped(first_x + pair / plastic), wrapped(first_y + pair / (plastic * plastic)));
+    return index % 2 == 0 ? point : Vec2d(-point);
+}
+
 double shutter_time(int index, int count, double shutter) {
     return 1 - shutter * (1 - (rank_of(index, count, 7) + 0.5) / count);
 }
@@ -138,8 +148,8 @@ Frame make_frame(const Shot& shot, int sample_index, const Camera& camera, const
                         ? frame.whole()
                         : covered_rect(bounds, frame.clip_from_view * frame.camera.view(), frame.size);
     // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
-    const Vec2d offset =
-        frame.through_centres ? Vec2d(0, 0) : jitter_of(frame.sample_index, frame.sample_count);
+    const auto jitter = frame.may_end_early ? paired_jitter_of : jitter_of;
+    const Vec2d offset = frame.through_centres ? Vec2d(0, 0) : jitter(frame.sample_index, frame.sample_count);
     const Vec2d ndc(2 * offset.x() / frame.size.x(), -2 * offset.y() / frame.size.y());
     Mat4d shift = Mat4d::Identity();
     shift(0, 3) = ndc.x();

@@ -35,6 +35,8 @@ struct Shot {
     bool through_centres = false;    ///< all frames look through the pixels' centres
     /// Paths light all surfaces: their light is noisy, and frames are averaged before the tone curve.
     bool averages_radiance = false;
+    /// The picture may end with fewer frames, by its noise or its time.
+    bool may_end_early = false;
 };
 
 /// One frame of an accumulated picture, as every pass sees it.
@@ -58,6 +60,10 @@ struct Frame : Shot {
 /// Sub-pixel offset of a sample in [-0.5, 0.5): points of the Halton sequence in bases 2 and 3, moved so that
 /// the mean of the first `count` is the pixel's centre. One sample is the centre itself.
 Vec2d jitter_of(int index, int count);
+
+/// The same of a picture that may end after any of its samples: opposite points of the R2 sequence (Roberts
+/// 2018) in pairs, so that the mean is the pixel's centre after each even number, and after all of them.
+Vec2d paired_jitter_of(int index, int count);
 
 /// Where on the lens, in parts of its radius, a sample looks through: points of a spiral (Vogel 1979), which
 /// cover the disc evenly whatever their number. Their mean is the centre.

@@ -160,6 +160,8 @@ void Renderer::prepare(Picture& picture) {
                         .paths = traces_paths && is_picture,
                         .custom = is_picture ? &custom_ : nullptr};
     picture.shot.averages_radiance = picture.contents.paths;
+    const ImageSettings& image = resolved.settings.image;
+    picture.shot.may_end_early = image.time_budget > 0 || (image.noise > 0 && picture.contents.paths);
     if (picture.contents.paths) picture.list = picture.list.as_first_hits();
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
