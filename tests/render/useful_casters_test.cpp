@@ -94,23 +94,35 @@ TEST(UsefulCasters, LeaveOutAFloor) {
     EXPECT_EQ(left_out(casters, lamp_at(Vec3(0, 0, 3), 0.5f)), 1u);
 }
 
-// Light from the top of the ball, 2 above the floor, goes 2 units to it straight down, and 2.83 at 45
-// degrees. The penumbra's radius there is a quarter of that, and the map's width as many times larger as the
-// filter may not be.
+// Light from the top of the ball, 2 above the floor, goes 2 units to it. The penumbra's radius there is 0.24
+// of that, rounded up to 0.5, and the map is as many times as wide as the filter may be.
 TEST(UsefulCasters, HaveRoomForPenumbrae) {
     const CasterSet casters({floor_of_20, ball_at(Vec3d(1, 0, 1), 1)});
-    for (const float slope : {0.0f, 1.0f}) {
-        const UsefulCasters useful =
-            useful_casters(sun_along(Vec3(slope, 0, -1)), casters, 0.24f, std::nullopt);
-        const double half = (slope > 0 ? 1 : 0.5) / widest_filter / 2;
-        EXPECT_LT((useful.bounds.min() - Vec3d(1 - half, -half, 0)).norm(), 1e-6)
-            << slope;  // of single precision
-        EXPECT_LT((useful.bounds.max() - Vec3d(1 + half, half, 2)).norm(), 1e-6) << slope;
-    }
-    // 4 above the ball's top, whose penumbra on the floor is as large as half the lamp.
-    const UsefulCasters useful = useful_casters(lamp_at(Vec3(1, 0, 6), 1), casters, 1, std::nullopt);
-    EXPECT_GE(useful.bounds.sizes().x(), 0.5 / widest_filter);
+    UsefulCasters useful = useful_casters(sun_along(Vec3(0, 0, -1)), casters, 0.24, std::nullopt);
+    const double half = 0.5 / widest_filter / 2;
+    EXPECT_LT((useful.bounds.min() - Vec3d(1 - half, -half, 0)).norm(), 1e-6);  // of single precision
+    EXPECT_LT((useful.bounds.max() - Vec3d(1 + half, half, 2)).norm(), 1e-6);
+    // 4 above the ball's top, whose penumbra on the floor has a radius from 0.5 on; the outermost rays go by
+    // it 1.41 + 1 aside, 2.6 to the floor.
+    useful = useful_casters(lamp_at(Vec3(1, 0, 6), 1), casters, 1, std::nullopt);
     EXPECT_EQ(useful.left_out.size(), 1u);
+    EXPECT_GE(useful.bounds.sizes().x(), 0.5 / widest_filter);
+    EXPECT_LE(useful.bounds.sizes().x(), 1 / widest_filter + 1e-6);
+}
+
+// A post 2 high on a floor of 400 under a low sun, which sees it from the side: the box is 2 high, and the
+// map turned to the sun is wide enough for 2 / sin(8 - 2.58 degrees) * tan(2.58 degrees) all the same.
+TEST(UsefulCasters, HaveRoomForPenumbraeOfALowSun) {
+    const CasterExtent post{Box3d(Vec3d(-0.1, -0.1, 0), Vec3d(0.1, 0.1, 2)), 0, {}};
+    ResolvedLight sun = sun_along(Vec3(std::cos(radians(8.0f)), 0, -std::sin(radians(8.0f))));
+    sun.angular_radius_deg = 2.58f;
+    const double extent = std::tan(radians(2.58));
+    const UsefulCasters useful =
+        useful_casters(sun, CasterSet({extent_of(facing_square(200)), post}), extent, std::nullopt);
+    ASSERT_EQ(useful.left_out.size(), 1u);
+    const Vec3d across(std::sin(radians(8.0)), 0, std::cos(radians(8.0)));
+    EXPECT_GE(widest_filter * useful.bounds.sizes().dot(across), extent * 2 / std::sin(radians(8 - 2.58)));
+    EXPECT_LT(useful.bounds.sizes().x(), 100);  // far less than the floor
 }
 
 TEST(UsefulCasters, FiltersAreAsWideAsTheShaders) {

@@ -61,8 +61,8 @@ void FireflyFilter::take(const PixelRect& block, PathRadiance& radiance) {
 }
 
 float FireflyFilter::staying(float found, float bright) {
-    const float paths = found / (bright * cell * cell);
-    return paths / (1 + paths);
+    // n / (n + 1), where n is found / (bright * pixels of a cell).
+    return found / (found + bright * float(cell * cell));
 }
 
 void FireflyFilter::blur(std::vector<Vec3>& values) const {

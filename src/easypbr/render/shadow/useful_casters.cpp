@@ -66,10 +66,13 @@ double longest_way(const ResolvedLight& light, const Box3d& box, const FacePlane
     const double height = std::max(heights_of(box, plane).highest, 0.0);
     if (light.type == LightType::directional) return height / std::sin(elevation_of(light, plane));
     const double above = height_of(light, plane) - height;
-    const Vec3d farthest =
-        (box.min() - light.position).cwiseAbs().cwiseMax((box.max() - light.position).cwiseAbs());
-    return above > 0 ? height * std::hypot(1, (farthest.norm() + bounding_radius(light)) / above)
-                     : std::numeric_limits<double>::infinity();
+    if (!(above > 0)) return std::numeric_limits<double>::infinity();
+    double aside = 0;  // the distance along the plane is convex: corners have the largest
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d to = box.corner(Box3d::CornerType(i)) - light.position;
+        aside = std::max(aside, (to - plane.normal * plane.normal.dot(to)).norm());
+    }
+    return height * std::hypot(1, (aside + bounding_radius(light)) / above);
 }
 
 /// No less than the radius of the widest penumbra of a light at this distance behind casters within a box. Of
@@ -117,10 +120,30 @@ bool hides_nothing(const CasterSet& casters, size_t i, const FacePlane& plane) {
     return true;
 }
 
-/// The box with room for penumbrae, as far as there are casters.
-Box3d with_room(const Box3d& box, double penumbra, const Box3d& all) {
-    const Vec3d half = (box.sizes() / 2).cwiseMax(penumbra / widest_filter / 2);
-    return Box3d(box.center() - half, box.center() + half).intersection(all);
+/// How wide a box looks at least along a direction, however a map is turned about it.
+double least_width(const Box3d& box, const Vec3d& along) {
+    double least = std::numeric_limits<double>::infinity();
+    // Between these directions across, the width is concave.
+    for (int i = 0; i < 3; ++i) {
+        const Vec3d across = along.cross(Vec3d::Unit(i));
+        const double length = across.norm();
+        if (length > 1e-9 * along.norm())
+            least = std::min(least, box.sizes().dot(across.cwiseAbs()) / length);
+    }
+    return least;
+}
+
+/// The box with room for penumbrae of light along a direction, as far as there are casters: where these end,
+/// it grows to the other sides.
+Box3d with_room(const Box3d& box, double penumbra, const Vec3d& along, const Box3d& all) {
+    const double room = penumbra / widest_filter;
+    Box3d grown = box;
+    for (double side = room; side > 0; side *= 1.25) {
+        const Vec3d half = (box.sizes() / 2).cwiseMax(side / 2);
+        grown = Box3d(box.center() - half, box.center() + half).intersection(all);
+        if (grown.contains(all) || least_width(grown, along) >= room) break;
+    }
+    return grown;
 }
 
 }  // namespace
@@ -170,7 +193,9 @@ UsefulCasters useful_casters(const ResolvedLight& light, const CasterSet& caster
     // All that is lit lies above each floor, so that the way behind a caster ends at the nearest one.
     double behind = casters.bounds.diagonal().norm();
     for (const FacePlane& plane : floors) behind = std::min(behind, longest_way(light, rest, plane));
-    found.bounds = with_room(rest, widest_penumbra(light, extent, rest, behind), casters.bounds);
+    const Vec3d along = light.type == LightType::directional ? Vec3d(light.direction.cast<double>())
+                                                             : Vec3d(rest.center() - light.position);
+    found.bounds = with_room(rest, widest_penumbra(light, extent, rest, behind), along, casters.bounds);
     return found.bounds.diagonal().norm() < least_gain * casters.bounds.diagonal().norm() ? found : all;
 }
 
