@@ -225,8 +225,8 @@ double root_mean_square(const Image& a, const Image& b) {
 
 // Paths by way of the mirror bring 3.2. 0.6 of it stays at its pixel, of the rest a part that grows, and what
 // remains is spread. The same paths: the mean stays what it was, but for the rounding of sums in single
-// precision. The error is below a third, that of 9 times as many samples, and goes on falling as light comes to
-// stay.
+// precision. The error is below a third, that of 9 times as many samples, and goes on falling as light comes
+// to stay.
 TEST(Fireflies, AreSpreadWithoutLossOfLight) {
     const Mirrored mirrored;
     const Image reference = mirrored.reference(), noisy = mirrored.picture(0, 16),

@@ -60,8 +60,10 @@ struct Instance {
     /// voxels with their whole cubes.
     Box3d box;
     /// Corners of the box: bit 0 of the row is x, bit 1 y, bit 2 z (0: least).
-    Eigen::Matrix<double, 8, 3> corners_world, corners_cam;
-    Eigen::Matrix<double, 8, 2> corners_px;  ///< NaN behind the camera, and where the lens's polynomial folds
+    Eigen::Matrix<double, 8, 3> corners_world = Eigen::Matrix<double, 8, 3>::Zero();
+    Eigen::Matrix<double, 8, 3> corners_cam = Eigen::Matrix<double, 8, 3>::Zero();
+    /// NaN behind the camera, and where the lens's polynomial folds.
+    Eigen::Matrix<double, 8, 2> corners_px = Eigen::Matrix<double, 8, 2>::Zero();
 };
 
 /// Values of every pixel, row 0 on top, `channels` to a pixel.
