@@ -4,13 +4,29 @@ find_package(Eigen3 REQUIRED NO_MODULE)
 # The layout of what has vectors of Eigen, a part of the library's ABI, would depend on -march and EIGEN_DONT_VECTORIZE.
 # This is Eigen's own value for the instruction sets without AVX; include/easypbr/core/math.h refuses others.
 set(EASYPBR_LAYOUT_DEFINITIONS EIGEN_MAX_STATIC_ALIGN_BYTES=16)
-# So does that of containers on libstdc++'s debug mode: where the flags ask for it, programs have it too.
-# include/easypbr/core/error.h refuses it in others.
+# So does that of containers on libstdc++'s debug mode: where the flags ask for it, programs have it too. Where flags ask
+# for it in some configurations alone, by generator expressions or as those of a type, it is permitted in this build.
+# include/easypbr/core/error.h refuses it elsewhere.
 get_directory_property(directory_definitions COMPILE_DEFINITIONS)
 get_directory_property(directory_options COMPILE_OPTIONS)
-string(TOUPPER "CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}" flags_of_type)
-if("${CMAKE_CXX_FLAGS} ${${flags_of_type}} ${directory_definitions} ${directory_options}" MATCHES "_GLIBCXX_DEBUG([ ;=]|$)")
+set(possible_flags "${CMAKE_CXX_FLAGS} ${directory_definitions} ${directory_options}")
+string(GENEX_STRIP "${possible_flags}" certain_flags)
+get_property(is_multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+if(is_multi_config)
+  foreach(type IN LISTS CMAKE_CONFIGURATION_TYPES)
+    string(TOUPPER "CMAKE_CXX_FLAGS_${type}" flags_of_type)
+    string(APPEND possible_flags " ${${flags_of_type}}")
+  endforeach()
+else()
+  string(TOUPPER "CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}" flags_of_type)
+  string(APPEND certain_flags " ${${flags_of_type}}")
+endif()
+set(EASYPBR_PERMITTED_DEFINITIONS)
+if(certain_flags MATCHES "_GLIBCXX_DEBUG([ ;=]|$)")
   list(APPEND EASYPBR_LAYOUT_DEFINITIONS _GLIBCXX_DEBUG EASYPBR_GLIBCXX_DEBUG)
+elseif(possible_flags MATCHES "_GLIBCXX_DEBUG([^_]|$)")
+  set(EASYPBR_PERMITTED_DEFINITIONS EASYPBR_GLIBCXX_DEBUG)
+  add_compile_definitions(${EASYPBR_PERMITTED_DEFINITIONS})
 endif()
 find_package(fmt REQUIRED)
 find_package(TBB REQUIRED)
