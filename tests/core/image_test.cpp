@@ -68,6 +68,19 @@ TEST(Image, EncodesColorAndLeavesAlphaLinear) {
     EXPECT_EQ(values_of<uint8_t>(to_u8(nothing)), (std::vector<uint8_t>{0}));
 }
 
+// As above: 0.5 of light is code 188, as a number 128.
+TEST(Image, TexelsAreEncodedByWhatTheyAre) {
+    const Image texels = image_of<float>(1, 1, 2, PixelType::f32, {0.5f, 0.5f});
+    EXPECT_EQ(values_of<uint8_t>(texels_to_u8(texels, true)), (std::vector<uint8_t>{188, 128}));
+    EXPECT_EQ(values_of<uint8_t>(texels_to_u8(texels, false)), (std::vector<uint8_t>{128, 128}));
+}
+
+TEST(Image, AlphaIsTheLastOfTwoOrFourChannels) {
+    for (const int channels : {1, 2, 3, 4})
+        EXPECT_EQ(has_alpha(Image(1, 1, channels, PixelType::u8)), channels % 2 == 0) << channels;
+    EXPECT_FALSE(has_alpha(Image()));
+}
+
 // 0.5 * 255 = 127.5 rounds away from zero; 65535 / 255 = 257.
 TEST(Image, DataHasNoCurve) {
     const Image numbers = image_of<float>(1, 1, 4, PixelType::f32, {0.5f, -1, 7, 0.25f});

@@ -109,6 +109,11 @@ class Image {
     std::vector<std::byte> data_;
 };
 
+/// Whether the last channel is alpha: of 2 channels, or 4.
+inline bool has_alpha(const Image& image) {
+    return image.channels() > 0 && image.channels() % 2 == 0;
+}
+
 /// The same picture with another number of channels: grey is repeated, missing alpha is opaque, extra
 /// channels dropped.
 Image with_channels(const Image& image, int channels);
@@ -119,6 +124,9 @@ Image to_u8(const Image& image);
 /// The same numbers as u8, for images of data in place of colours, such as roughness and normals: f32 is
 /// clamped to [0, 1] and has no sRGB curve; u8 and u16 are as in to_u8().
 Image data_to_u8(const Image& image);
+
+/// Texels of a texture as u8: to_u8() of colours, data_to_u8() of data.
+Image texels_to_u8(const Image& image, bool is_color);
 
 /// The same picture as linear f32; u8 and u16 colour is decoded from sRGB, alpha (2nd or 4th channel) is
 /// scaled only.

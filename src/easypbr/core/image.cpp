@@ -55,9 +55,10 @@ bool has_alpha_from(const Image& image, T least) {
     return true;
 }
 
-/// `code` gives the code of a value in [0, 1] of f32, by its place among all values.
-template <class Code>
-Image u8_of(const Image& image, Code&& code) {
+/// `encoded` gives the number from 0 to 1 that is stored for an f32 value in [0, 1], by its place among all
+/// values.
+template <class Encoded>
+Image u8_of(const Image& image, Encoded&& encoded) {
     if (image.type() == PixelType::u8) return image;
     Image out(image.width(), image.height(), image.channels(), PixelType::u8);
     uint8_t* to = out.pixels<uint8_t>().data();
@@ -71,7 +72,7 @@ Image u8_of(const Image& image, Code&& code) {
     const float* in = image.pixels<float>().data();
     parallel_for(count, pixel_grain, [&](size_t i) {
         const float v = in[i] > 0 ? std::min(in[i], 1.0f) : 0.0f;
-        to[i] = uint8_t(std::lround(code(v, i) * 255.0f));
+        to[i] = uint8_t(std::lround(encoded(v, i) * 255.0f));
     });
     return out;
 }
@@ -123,6 +124,10 @@ Image to_u8(const Image& image) {
 
 Image data_to_u8(const Image& image) {
     return u8_of(image, [](float v, size_t) { return v; });
+}
+
+Image texels_to_u8(const Image& image, bool is_color) {
+    return is_color ? to_u8(image) : data_to_u8(image);
 }
 
 Image to_linear_f32(const Image& image) {

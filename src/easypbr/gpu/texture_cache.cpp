@@ -28,10 +28,6 @@ const std::array<uint8_t, 4096>& encode_table() {
     return table;
 }
 
-bool has_alpha(const Image& image) {
-    return image.channels() % 2 == 0;
-}
-
 /// Of an image without alpha all is seen.
 TexelKind kind_in(const Image& image, TexelKind kind) {
     return kind == TexelKind::covering_color && !has_alpha(image) ? TexelKind::color : kind;
@@ -103,11 +99,6 @@ gl::Wrapping wrapping(Wrap wrap) {
                                   : gl::Wrapping::clamp;
 }
 
-/// Only colours have the curve of sRGB.
-Image texels_of(const Image& image, TexelKind kind) {
-    return kind == TexelKind::data ? data_to_u8(image) : to_u8(image);
-}
-
 /// Of a f32 image without values that are no numbers.
 float largest_color(const Image& image) {
     const size_t channels = size_t(image.channels()), colors = channels - size_t(has_alpha(image));
@@ -125,15 +116,16 @@ std::string name_of(const Texture& texture, std::string_view slot) {
 
 /// The image as u8, without values that are no numbers.
 Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
-    if (image.type() != PixelType::f32) return texels_of(image, kind);
+    const bool is_color = kind != TexelKind::data;
+    if (image.type() != PixelType::f32) return texels_to_u8(image, is_color);
     Image valid = image;
     if (const size_t replaced = replace_non_finite(valid))
         log_warning(fmt::format("{}: {} values that are NaN or infinite were replaced by 0", name, replaced));
     // What is less than half a code above shows nowhere.
-    if (const float largest = kind == TexelKind::data ? 0 : largest_color(valid); largest > 1 + 0.5f / 255)
+    if (const float largest = is_color ? largest_color(valid) : 0; largest > 1 + 0.5f / 255)
         log_warning(
             fmt::format("{}: colours above 1 were clamped to 1, the largest value is {:g}", name, largest));
-    return texels_of(valid, kind);
+    return texels_to_u8(valid, is_color);
 }
 
 native::Texture::Wrap host_wrapping(Wrap wrap) {

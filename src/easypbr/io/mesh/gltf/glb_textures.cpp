@@ -39,7 +39,7 @@ struct Plane {
 };
 
 Plane plane_of(const Texture& texture, int channel, TexelUse use = TexelUse::number) {
-    const Image image = use == TexelUse::color ? to_u8(*texture.image) : data_to_u8(*texture.image);
+    const Image image = texels_to_u8(*texture.image, use == TexelUse::color);
     return {.image = image, .channel = std::min(channel, image.channels() - 1)};
 }
 

@@ -180,9 +180,9 @@ class MtlWriter {
         if (texture.path.empty() && !texture.image) return;
         body_ += keyword + option;
         // Readers take the alpha of an image for the opacity.
-        const bool has_alpha = texture.image && texture.image->channels() % 2 == 0;
-        const bool is_alpha = has_alpha && texture.channel == texture.image->channels() - 1;
-        if (texture.channel > 0 || (has_alpha && kind == opacity_kind))
+        const bool with_alpha = texture.image && has_alpha(*texture.image);
+        const bool is_alpha = with_alpha && texture.channel == texture.image->channels() - 1;
+        if (texture.channel > 0 || (with_alpha && kind == opacity_kind))
             line(" -imfchan {}", is_alpha ? 'm' : "rgbm"[texture.channel]);
         if (texture.wrap_u == Wrap::clamp && texture.wrap_v == Wrap::clamp) body_ += " -clamp on";
         const Mat3& M = texture.uv_transform;
