@@ -68,6 +68,19 @@ TEST(Image, EncodesColorAndLeavesAlphaLinear) {
     EXPECT_EQ(values_of<uint8_t>(to_u8(nothing)), (std::vector<uint8_t>{0}));
 }
 
+TEST(Image, LargestColorIsThatOfNumbersBesideAlpha) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(largest_color(image_of<float>(2, 1, 2, PixelType::f32, {0.5f, 9, 3, 1})), 3);
+    EXPECT_EQ(largest_color(image_of<float>(2, 1, 3, PixelType::f32, {nan, 1, 2, 7, nan, 4})), 7);
+    EXPECT_EQ(largest_color(image_of<float>(1, 1, 1, PixelType::f32, {-2})), 0);
+    EXPECT_THROW(largest_color(Image(1, 1, 1, PixelType::u8)), ArgumentError);
+    // More than the loop's chunks of 65536 pixels.
+    Image large(400, 400, 3, PixelType::f32);
+    large.at<float>(399, 399)[2] = 5;
+    large.at<float>(7, 0)[0] = 4;
+    EXPECT_EQ(largest_color(large), 5);
+}
+
 // As above: 0.5 of light is code 188, as a number 128.
 TEST(Image, TexelsAreEncodedByWhatTheyAre) {
     const Image texels = image_of<float>(1, 1, 2, PixelType::f32, {0.5f, 0.5f});

@@ -272,6 +272,37 @@ TEST(Glb, FloatsAreCodedByWhatTheyAreUsedAs) {
     EXPECT_EQ(b.roughness_texture.image, b.occlusion_texture.image);
 }
 
+// Once of each image, as when it is drawn; of colours alone, not of alpha and numbers.
+TEST(Glb, ColorsAboveOneAreAWarning) {
+    MeshData data = square();
+    Material first, second;
+    first.base_color_texture.image = flat_floats({0.5f, 7.5f, 0.5f});
+    first.opacity_texture.image = first.roughness_texture.image = flat_floats({3});
+    first.emissive_texture.image = flat_floats({2, 9});
+    first.emissive_texture.path = "sun.exr";
+    first.normal_texture.image = flat_floats({0.5f, 0.5f, 4});
+    first.sheen_color = Vec3::Ones();
+    first.sheen_color_texture.image = flat_floats({5, 0, 0});
+    first.specular_color_texture.image = flat_floats({6, 0, 0});
+    second.base_color_texture = first.base_color_texture;
+    second.emissive_texture.image = flat_floats({1, 9});
+    data.materials = {first, second};
+    data.parts = {{"a", 0, 1, 0}, {"b", 1, 1, 1}};
+    const TemporaryFolder folder;
+    const LogCapture log;
+    Mesh(data).save(folder / "a.glb");
+    const std::string end = ": colours above 1 were clamped to 1, the largest value is ";
+    for (const char* const warning : {"base_color_texture@7.5", "emissive_texture 'sun.exr'@2",
+                                      "sheen_color_texture@5", "specular_color_texture@6"}) {
+        std::string text = warning;
+        text.replace(text.find('@'), 1, end);
+        EXPECT_NE(log.text.find(text), std::string::npos) << text << " in:\n" << log.text;
+    }
+    size_t count = 0;
+    for (size_t at = log.text.find(end); at != std::string::npos; at = log.text.find(end, at + 1)) ++count;
+    EXPECT_EQ(count, 4u) << log.text;
+}
+
 /// An image of 8 bits with one channel, row by row.
 std::shared_ptr<const Image> grey_image(int width, std::initializer_list<uint8_t> texels) {
     auto image = std::make_shared<Image>(width, int(texels.size()) / width, 1, PixelType::u8);

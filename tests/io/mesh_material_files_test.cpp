@@ -10,6 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "file_limit.h"
 #include "io/flat_image.h"
@@ -126,6 +127,36 @@ TEST(MeshMaterialFiles, ObjCodesFloatsByWhatTheyAreUsedAs) {
     EXPECT_FALSE(back.opacity_texture);
     EXPECT_EQ(code(back.roughness_texture, 0), 128);
     EXPECT_EQ(code(back.normal_texture, 2), 128);
+}
+
+// As when they are drawn; not of data, and not where the MTL names the file that holds the floats.
+TEST(MeshMaterialFiles, ObjWarnsOfColorsAboveOne) {
+    const TemporaryFolder folder;
+    const MeshData random = random_mesh(3, 10);
+    MeshData mesh;
+    mesh.V = random.V;
+    mesh.F = random.F;
+    mesh.UV = random.UV;
+    auto image = std::make_shared<Image>(2, 2, 3, PixelType::f32);
+    std::ranges::fill(image->pixels<float>(), 6.5f);
+    Material m;
+    m.roughness_texture.image = image;
+    const auto warnings_of = [&] {
+        mesh.materials = {m};
+        std::string text;
+        set_log_sink([&](LogLevel, std::string_view message) { text += std::string(message) + "\n"; });
+        Mesh(mesh).save(folder / "m.obj");
+        set_log_sink({});
+        return text;
+    };
+    EXPECT_EQ(warnings_of(), "");
+    m.base_color_texture.image = m.emissive_texture.image = image;
+    EXPECT_EQ(warnings_of(),
+              "base_color_texture: colours above 1 were clamped to 1, the largest value is 6.5\n");
+    io::save_image(*image, folder / "sun.exr");
+    m = {};
+    m.emissive_texture = io::load_texture(folder / "sun.exr");
+    EXPECT_EQ(warnings_of(), "");
 }
 
 TEST(MeshMaterialFiles, ObjImagesReplaceNoneOfOtherFiles) {

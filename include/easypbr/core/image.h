@@ -147,6 +147,10 @@ Image picture_to_u8(const Image& picture);
 /// to_linear_f32() of a picture, premultiplied.
 Image picture_to_linear_f32(const Image& picture);
 
+/// The largest value of a channel other than alpha that is a number; at least 0. Throws ArgumentError unless
+/// the pixels are f32.
+float largest_color(const Image& image);
+
 /// Puts 0 where a value of an f32 image is NaN or infinite; returns how many there were.
 size_t replace_non_finite(Image& image);
 

@@ -176,6 +176,21 @@ Image picture_to_linear_f32(const Image& picture) {
     return picture.type() == PixelType::f32 ? picture : premultiplied(to_linear_f32(picture));
 }
 
+float largest_color(const Image& image) {
+    const size_t channels = size_t(image.channels()), colors = channels - size_t(has_alpha(image));
+    const float* values = image.pixels<float>().data();
+    std::atomic<float> largest = 0;
+    parallel_chunks(image.pixel_count(), size_t(1) << 16, [&](size_t begin, size_t end) {
+        float own = 0;
+        for (size_t i = begin; i < end; ++i)
+            for (size_t c = 0; c < colors; ++c) own = std::max(own, values[i * channels + c]);
+        float seen = largest;
+        while (seen < own && !largest.compare_exchange_weak(seen, own)) {
+        }
+    });
+    return largest;
+}
+
 size_t replace_non_finite(Image& image) {
     if (image.type() != PixelType::f32) return 0;
     const auto values = image.pixels<float>();

@@ -13,6 +13,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/scene/texture_warnings.h"
 
 namespace easypbr::gpu {
 namespace {
@@ -99,21 +100,6 @@ gl::Wrapping wrapping(Wrap wrap) {
                                   : gl::Wrapping::clamp;
 }
 
-/// Of a f32 image without values that are no numbers.
-float largest_color(const Image& image) {
-    const size_t channels = size_t(image.channels()), colors = channels - size_t(has_alpha(image));
-    const auto values = image.pixels<float>();
-    float largest = 0;
-    for (size_t i = 0; i < values.size(); ++i)
-        if (i % channels < colors) largest = std::max(largest, values[i]);
-    return largest;
-}
-
-/// A texture in a warning.
-std::string name_of(const Texture& texture, std::string_view slot) {
-    return texture.path.empty() ? std::string(slot) : fmt::format("{} '{}'", slot, texture.path);
-}
-
 /// The image as u8, without values that are no numbers.
 Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
     const bool is_color = kind != TexelKind::data;
@@ -121,10 +107,7 @@ Image to_valid_u8(const Image& image, TexelKind kind, const std::string& name) {
     Image valid = image;
     if (const size_t replaced = replace_non_finite(valid))
         log_warning(fmt::format("{}: {} values that are NaN or infinite were replaced by 0", name, replaced));
-    // What is less than half a code above shows nowhere.
-    if (const float largest = is_color ? largest_color(valid) : 0; largest > 1 + 0.5f / 255)
-        log_warning(
-            fmt::format("{}: colours above 1 were clamped to 1, the largest value is {:g}", name, largest));
+    if (is_color) warn_of_clamped_colors(valid, name);
     return texels_to_u8(valid, is_color);
 }
 
@@ -317,7 +300,7 @@ const gl::Texture& TextureCache::get(const Texture& texture, TexelKind kind, std
     kind = kind_in(*texture.image, kind);
     const Key key{texture.image.get(), kind, texture.wrap_u, texture.wrap_v, texture.filter};
     const auto make = [&] {
-        Entry entry{texture.image, make_texture(*texture.image, kind, name_of(texture, slot))};
+        Entry entry{texture.image, make_texture(*texture.image, kind, name_in_warning(texture, slot))};
         // Anisotropic filtering is cheap on a GPU and costs several times the fetch on a CPU rasteriser.
         const float anisotropy = gl::Context::current().info().software ? 1.0f : 8.0f;
         entry.texture.sampling(
@@ -333,7 +316,7 @@ const native::Texture& TextureCache::host(const Texture& texture, TexelKind kind
     const Key key{texture.image.get(), kind, texture.wrap_u, texture.wrap_v, texture.filter};
     const auto make = [&] {
         HostEntry entry{texture.image, {}, {}};
-        entry.texels = host_texels(texture, kind, name_of(texture, slot), entry.texture);
+        entry.texels = host_texels(texture, kind, name_in_warning(texture, slot), entry.texture);
         entry.texture.texels = entry.texels.data();
         return entry;
     };

@@ -142,8 +142,7 @@ Texture merged_texture(const Texture& like, const std::vector<Plane>& planes) {
 }
 
 /// A plane as the merge has it.
-Plane placed(const Merge& merge, const Texture& texture, int channel, TexelUse use = TexelUse::number) {
-    Plane plane = plane_of(texture, channel, use);
+Plane placed(const Merge& merge, const Texture& texture, Plane plane) {
     const auto found = merge.transforms.find(&texture);
     if (found != merge.transforms.end() && !found->second.isIdentity(0)) plane.transform = found->second;
     return plane;
@@ -159,21 +158,8 @@ Texture metallic_roughness(const Material& material) {
                         metallic.uv_transform == roughness.uv_transform;
     if (is_one && metallic.channel == 2 && roughness.channel == 1) return metallic;
     std::vector<Plane> planes(3);
-    if (roughness) planes[1] = placed(merge, roughness, roughness.channel);
-    if (metallic) planes[2] = placed(merge, metallic, metallic.channel);
-    return merged_texture(*merge.like, planes);
-}
-
-Texture base_color(const Material& material) {
-    const Texture& color = material.base_color_texture;
-    const Texture& opacity = material.opacity_texture;
-    if (!opacity) return color;
-    const Merge merge = merge_of(parts_of_color(material));
-    std::vector<Plane> planes(4);
-    if (color)
-        for (int c = 0; c < 3; ++c)
-            planes[size_t(c)] = placed(merge, color, color.image->channels() < 3 ? 0 : c, TexelUse::color);
-    planes[3] = placed(merge, opacity, opacity.channel);
+    if (roughness) planes[1] = placed(merge, roughness, plane_of(roughness, roughness.channel));
+    if (metallic) planes[2] = placed(merge, metallic, plane_of(metallic, metallic.channel));
     return merged_texture(*merge.like, planes);
 }
 
@@ -232,6 +218,24 @@ OrderedJson& GlbContent::extend(OrderedJson& object, const char* extension) {
     return object["extensions"][extension];
 }
 
+Texture GlbMaterials::base_color(const Material& material) {
+    const Texture& color = material.base_color_texture;
+    const Texture& opacity = material.opacity_texture;
+    if (!opacity) return color;
+    const Merge merge = merge_of(parts_of_color(material));
+    std::vector<Plane> planes(4);
+    if (color) {
+        Texture encoded = color;
+        encoded.image = texels_.of(color, TexelUse::color, "base_color");
+        for (int c = 0; c < 3; ++c) {
+            const int channel = color.image->channels() < 3 ? 0 : c;
+            planes[size_t(c)] = placed(merge, color, plane_of(encoded, channel, TexelUse::color));
+        }
+    }
+    planes[3] = placed(merge, opacity, plane_of(opacity, opacity.channel));
+    return merged_texture(*merge.like, planes);
+}
+
 size_t GlbMaterials::image_index(const std::shared_ptr<const Image>& image) {
     const auto [found, is_new] = images_.try_emplace(image, images_.size());
     if (is_new) {
@@ -242,7 +246,7 @@ size_t GlbMaterials::image_index(const std::shared_ptr<const Image>& image) {
     return found->second;
 }
 
-size_t GlbMaterials::texture_index(const Texture& texture, TexelUse use) {
+size_t GlbMaterials::texture_index(const Texture& texture, TexelUse use, std::string_view name) {
     const bool nearest = texture.filter == Filter::nearest;
     const OrderedJson sampler = {{"magFilter", nearest ? 9728 : 9729},
                                  {"minFilter", nearest ? 9728 : 9987},
@@ -255,12 +259,12 @@ size_t GlbMaterials::texture_index(const Texture& texture, TexelUse use) {
         values.push_back(value);
         return values.size() - 1;
     };
-    const size_t source = image_index(texels_.of(texture, use));
+    const size_t source = image_index(texels_.of(texture, use, name));
     return index_in("textures", {{"sampler", index_in("samplers", sampler)}, {"source", source}});
 }
 
-OrderedJson GlbMaterials::texture_info(const Texture& texture, TexelUse use) {
-    OrderedJson info = {{"index", texture_index(texture, use)}};
+OrderedJson GlbMaterials::texture_info(const Texture& texture, TexelUse use, std::string_view name) {
+    OrderedJson info = {{"index", texture_index(texture, use, name)}};
     if (texture.uv_transform != Mat3::Identity())
         content_.extend(info, "KHR_texture_transform") = transform_json(texture.uv_transform);
     return info;
@@ -273,7 +277,7 @@ void GlbMaterials::add_surface(const Material& material, OrderedJson& json) {
     surface["metallicFactor"] = material.metallic;
     surface["roughnessFactor"] = material.roughness;
     if (const Texture texture = base_color(material))
-        surface["baseColorTexture"] = texture_info(texture, TexelUse::color);
+        surface["baseColorTexture"] = texture_info(texture, TexelUse::color, "base_color");
     if (const Texture texture = metallic_roughness(material))
         surface["metallicRoughnessTexture"] = texture_info(texture, TexelUse::number);
     if (const Texture& texture = material.normal_texture) {
@@ -288,20 +292,25 @@ void GlbMaterials::add_surface(const Material& material, OrderedJson& json) {
 
 void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
     if (const Texture& texture = material.emissive_texture)
-        json["emissiveTexture"] = texture_info(texture, TexelUse::color);
+        json["emissiveTexture"] = texture_info(texture, TexelUse::color, "emissive");
     // The factor ends at 1; what is brighter goes into the strength.
     const float strength = std::max(1.0f, material.emissive.maxCoeff());
     json["emissiveFactor"] = color_json(material.emissive / strength);
     if (strength > 1) content_.extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
 }
 
-void GlbMaterials::add_texture(OrderedJson& extension, const char* key, const Texture& texture,
-                               TexelUse use) {
-    if (texture) extension[key] = texture_info(texture, use);
+void GlbMaterials::add_colors(OrderedJson& extension, const char* key, const Texture& texture,
+                              std::string_view name) {
+    if (texture) extension[key] = texture_info(texture, TexelUse::color, name);
+}
+
+void GlbMaterials::add_vectors(OrderedJson& extension, const char* key, const Texture& texture) {
+    if (texture) extension[key] = texture_info(texture, TexelUse::vector);
 }
 
 void GlbMaterials::add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel) {
-    add_texture(extension, key, in_channel(texture, channel), TexelUse::number);
+    if (const Texture numbers = in_channel(texture, channel))
+        extension[key] = texture_info(numbers, TexelUse::number);
 }
 
 void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
@@ -310,7 +319,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
                          {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
         add_channel(e, "clearcoatTexture", material.clearcoat_texture, 0);
         add_channel(e, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture, 1);
-        add_texture(e, "clearcoatNormalTexture", material.clearcoat_normal_texture, TexelUse::vector);
+        add_vectors(e, "clearcoatNormalTexture", material.clearcoat_normal_texture);
         if (material.clearcoat_normal_texture)
             e["clearcoatNormalTexture"]["scale"] = material.clearcoat_normal_scale;
         content_.extend(json, khr_clearcoat) = std::move(e);
@@ -318,7 +327,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
     if (!is_black(material.sheen_color)) {
         OrderedJson e = {{"sheenColorFactor", color_json(material.sheen_color)},
                          {"sheenRoughnessFactor", material.sheen_roughness}};
-        add_texture(e, "sheenColorTexture", material.sheen_color_texture, TexelUse::color);
+        add_colors(e, "sheenColorTexture", material.sheen_color_texture, "sheen_color");
         add_channel(e, "sheenRoughnessTexture", material.sheen_roughness_texture, 3);
         content_.extend(json, khr_sheen) = std::move(e);
     }
@@ -334,7 +343,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
     if (material.anisotropy > 0) {
         OrderedJson e = {{"anisotropyStrength", material.anisotropy},
                          {"anisotropyRotation", radians(double(material.anisotropy_rotation_deg))}};
-        add_texture(e, "anisotropyTexture", material.anisotropy_texture, TexelUse::vector);
+        add_vectors(e, "anisotropyTexture", material.anisotropy_texture);
         content_.extend(json, khr_anisotropy) = std::move(e);
     }
 }
@@ -346,7 +355,7 @@ void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
         OrderedJson e = {{"specularFactor", material.specular},
                          {"specularColorFactor", color_json(material.specular_color)}};
         add_channel(e, "specularTexture", material.specular_texture, 3);
-        add_texture(e, "specularColorTexture", material.specular_color_texture, TexelUse::color);
+        add_colors(e, "specularColorTexture", material.specular_color_texture, "specular_color");
         content_.extend(json, khr_specular) = std::move(e);
     }
     if (material.transmission > 0) {

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/io/mesh/png_texels.h"
@@ -44,12 +45,16 @@ class GlbMaterials {
     void add_emission(const Material& material, OrderedJson& json);
     void add_layers(const Material& material, OrderedJson& json);
     void add_dielectric(const Material& material, OrderedJson& json);
+    /// One texture of base colour and opacity.
+    Texture base_color(const Material& material);
     /// A texture that is read from one channel, which the format fixes.
     void add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel);
-    void add_texture(OrderedJson& extension, const char* key, const Texture& texture, TexelUse use);
-    OrderedJson texture_info(const Texture& texture, TexelUse use);
+    void add_colors(OrderedJson& extension, const char* key, const Texture& texture, std::string_view name);
+    void add_vectors(OrderedJson& extension, const char* key, const Texture& texture);
+    /// `name`: see PngTexels::of(); of colours.
+    OrderedJson texture_info(const Texture& texture, TexelUse use, std::string_view name = {});
     size_t image_index(const std::shared_ptr<const Image>& image);
-    size_t texture_index(const Texture& texture, TexelUse use);
+    size_t texture_index(const Texture& texture, TexelUse use, std::string_view name);
 
     GlbContent& content_;
     PngTexels texels_;

@@ -188,8 +188,8 @@ class MtlWriter {
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0) && obj_mapping().has_transform(M))
             line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
-        line(" {}\n",
-             is_in_file(texture) ? name_in_line(path_of(texture)) : name_of(texels_.of(texture, use), kind));
+        line(" {}\n", is_in_file(texture) ? name_in_line(path_of(texture))
+                                          : name_of(texels_.of(texture, use, kind), kind));
     }
 
     std::string path_of(const Texture& texture) const {
