@@ -16,16 +16,16 @@ namespace {
 
 /// One channel of an image, as 8 bits.
 struct Plane {
-    Image image;
+    std::shared_ptr<const Image> image;  ///< null: none
     int channel = 0;
     /// From the texture coordinates of the merged texture to its own, where these are others.
     std::optional<Mat3d> transform = {};
 
     uint8_t at(int x, int y, int width, int height) const {
         if (transform) return at_center(x, y, width, height);
-        const int column = int((long long)x * image.width() / width),
-                  row = int((long long)y * image.height() / height);
-        return image.at<uint8_t>(column, row)[channel];
+        const int column = int((long long)x * image->width() / width),
+                  row = int((long long)y * image->height() / height);
+        return image->at<uint8_t>(column, row)[channel];
     }
 
     uint8_t at_center(int x, int y, int width, int height) const {
@@ -33,14 +33,21 @@ struct Plane {
         const auto texel = [](double t, int size) {
             return std::clamp(int((t - std::floor(t)) * size), 0, size - 1);
         };
-        return image.at<uint8_t>(texel(uv.x(), image.width()),
-                                 image.height() - 1 - texel(uv.y(), image.height()))[channel];
+        return image->at<uint8_t>(texel(uv.x(), image->width()),
+                                  image->height() - 1 - texel(uv.y(), image->height()))[channel];
     }
 };
 
-Plane plane_of(const Texture& texture, int channel, TexelUse use = TexelUse::number) {
-    const Image image = texels_to_u8(*texture.image, use == TexelUse::color);
-    return {.image = image, .channel = std::min(channel, image.channels() - 1)};
+Plane plane_of(const Texture& texture, int channel) {
+    return {.image = texture.image, .channel = std::min(channel, texture.image->channels() - 1)};
+}
+
+/// A texture with its texels as u8.
+Texture encoded(const Texture& texture, TexelUse use = TexelUse::number) {
+    Texture out = texture;
+    if (texture.image->type() != PixelType::u8)
+        out.image = std::make_shared<const Image>(texels_to_u8(*texture.image, use == TexelUse::color));
+    return out;
 }
 
 /// A channel that is put together with those of other textures.
@@ -118,7 +125,7 @@ std::vector<Part> parts_of_color(const Material& material) {
 
 /// Texels of a plane along each axis of the merged texture.
 Eigen::Vector2i size_of_plane(const Plane& plane) {
-    const Eigen::Vector2i size(plane.image.width(), plane.image.height());
+    const Eigen::Vector2i size(plane.image->width(), plane.image->height());
     if (!plane.transform) return size;
     return plane.transform->topLeftCorner<2, 2>().cast<int>().cwiseAbs().transpose() * size;
 }
@@ -127,14 +134,13 @@ Eigen::Vector2i size_of_plane(const Plane& plane) {
 Texture merged_texture(const Texture& like, const std::vector<Plane>& planes) {
     Eigen::Vector2i size(1, 1);
     for (const Plane& plane : planes)
-        if (!plane.image.empty()) size = size.cwiseMax(size_of_plane(plane));
+        if (plane.image) size = size.cwiseMax(size_of_plane(plane));
     const int width = size.x(), height = size.y();
     auto image = std::make_shared<Image>(width, height, int(planes.size()), PixelType::u8);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (size_t c = 0; c < planes.size(); ++c)
-                image->at<uint8_t>(x, y)[c] =
-                    planes[c].image.empty() ? 255 : planes[c].at(x, y, width, height);
+                image->at<uint8_t>(x, y)[c] = planes[c].image ? planes[c].at(x, y, width, height) : 255;
     Texture out = like;
     out.image = std::move(image);
     out.channel = 0;
@@ -158,8 +164,8 @@ Texture metallic_roughness(const Material& material) {
                         metallic.uv_transform == roughness.uv_transform;
     if (is_one && metallic.channel == 2 && roughness.channel == 1) return metallic;
     std::vector<Plane> planes(3);
-    if (roughness) planes[1] = placed(merge, roughness, plane_of(roughness, roughness.channel));
-    if (metallic) planes[2] = placed(merge, metallic, plane_of(metallic, metallic.channel));
+    if (roughness) planes[1] = placed(merge, roughness, plane_of(encoded(roughness), roughness.channel));
+    if (metallic) planes[2] = placed(merge, metallic, plane_of(encoded(metallic), metallic.channel));
     return merged_texture(*merge.like, planes);
 }
 
@@ -167,7 +173,7 @@ Texture metallic_roughness(const Material& material) {
 Texture in_channel(const Texture& texture, int channel) {
     if (!texture || texture.channel == channel) return texture;
     std::vector<Plane> planes(size_t(channel) + 1);
-    planes.back() = plane_of(texture, texture.channel);
+    planes.back() = plane_of(encoded(texture), texture.channel);
     return merged_texture(texture, planes);
 }
 
@@ -225,14 +231,15 @@ Texture GlbMaterials::base_color(const Material& material) {
     const Merge merge = merge_of(parts_of_color(material));
     std::vector<Plane> planes(4);
     if (color) {
-        Texture encoded = color;
-        encoded.image = texels_.of(color, TexelUse::color, "base_color");
+        Texture texels = color;
+        texels.image = texels_.of(color, TexelUse::color, "base_color");
+        texels = encoded(texels, TexelUse::color);
         for (int c = 0; c < 3; ++c) {
             const int channel = color.image->channels() < 3 ? 0 : c;
-            planes[size_t(c)] = placed(merge, color, plane_of(encoded, channel, TexelUse::color));
+            planes[size_t(c)] = placed(merge, color, plane_of(texels, channel));
         }
     }
-    planes[3] = placed(merge, opacity, plane_of(opacity, opacity.channel));
+    planes[3] = placed(merge, opacity, plane_of(encoded(opacity), opacity.channel));
     return merged_texture(*merge.like, planes);
 }
 
