@@ -228,8 +228,9 @@ class Session {
     /// Before anything is drawn: apply_lens(); outdates what was drawn before. Returns what will be drawn, a
     /// picture, surfaces, or both.
     Drawn begin(Prepared& prepared, bool picture, bool surfaces);
-    /// Replaces a camera that is warped, the size, and the camera that the motion begins from by what has to
-    /// be drawn.
+    /// Sets the lens of what will be drawn. Where it or that of the motion's camera warps, replaces camera,
+    /// size and the camera that the motion begins from by what has to be drawn, and a background image by one
+    /// that is put behind the warped picture.
     void apply_lens(Drawn& drawn, Prepared& prepared, bool picture);
     /// Of a picture that a lens warps: leaves a background image out of what is drawn, and puts it behind the
     /// warped picture. It is in the picture's pixels, which the lens made.
