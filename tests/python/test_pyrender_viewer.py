@@ -205,7 +205,36 @@ def test_the_window_does_not_wait_for_ever_for_the_lock():
     assert not viewer._drawing.shown
 
 
+def test_lights_of_the_camera_are_moved_under_the_lock(monkeypatch):
+    scene, _ = scene_of(square())
+    viewer = viewer_of(scene, use_direct_lighting=True)
+    viewer._drawing.view.camera = at(0, 0, 2)
+    poses, is_free = [], []
+
+    def carry(pose):
+        poses.append(pose[2, 3])
+        # A lock that its own thread holds is none to it.
+        other = threading.Thread(target=lambda: is_free.append(viewer.render_lock.acquire(blocking=False)))
+        other.start()
+        other.join()
+
+    monkeypatch.setattr(viewer._drawing, "carry", carry)
+    with viewer.render_lock:
+        thread = threading.Thread(target=viewer._follow)
+        thread.start()
+        thread.join(30)
+        assert not thread.is_alive() and not poses
+    viewer._follow()
+    viewer._follow()
+    assert (poses, is_free) == ([2], [False])
+
+
 # Keys.
+
+
+class Event:
+    def __init__(self, key, repeat=False):
+        self.key, self.repeat, self.kind = key, repeat, "key_down"
 
 
 def test_registered_keys_call_their_functions():
@@ -213,11 +242,38 @@ def test_registered_keys_call_their_functions():
     scene, _ = scene_of(square())
     spaced = [lambda viewer, *a, **b: calls.append((a, b)), [1, 2], {"c": 3}]
     viewer = viewer_of(scene, registered_keys={"s": lambda viewer: calls.append(("s", viewer)), " ": spaced})
-
-    class Event:
-        def __init__(self, key, repeat=False):
-            self.key, self.repeat, self.kind = key, repeat, "key_down"
-
     taken = [viewer._press(event) for event in (Event("S"), Event("S", True), Event("space"), Event("Q"))]
-    assert taken == [True, True, True, False]
+    assert (taken, calls) == ([True, True, True, False], []), "events are handled under the view's lock"
+    frame(viewer)
     assert calls == [("s", viewer), ((1, 2), {"c": 3})]
+    frame(viewer)
+    assert len(calls) == 2
+
+
+def test_functions_of_keys_may_take_the_lock_and_change_the_next_frame():
+    """Who is in update() holds the lock and waits for the view: the thread of events must not wait for it."""
+    scene, node = scene_of(square())
+
+    def hide(viewer):
+        with viewer.render_lock:
+            scene.remove_node(node)
+
+    viewer = viewer_of(scene, registered_keys={"h": hide})
+    assert frame(viewer).max() > 0
+    with viewer.render_lock:
+        thread = threading.Thread(target=lambda: viewer._press(Event("H")), daemon=True)
+        thread.start()
+        thread.join(30)
+        assert not thread.is_alive()
+    assert frame(viewer).max() == 0
+
+
+def test_an_exception_of_a_key_leaves_the_others(capsys):
+    calls = []
+    scene, _ = scene_of(square())
+    viewer = viewer_of(scene, registered_keys={"a": lambda viewer: 1 / 0, "b": lambda viewer: calls.append("b")})
+    for key in "AB":
+        viewer._press(Event(key))
+    frame(viewer)
+    frame(viewer)
+    assert calls == ["b"] and "ZeroDivisionError" in capsys.readouterr().err

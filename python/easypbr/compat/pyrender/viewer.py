@@ -1,7 +1,9 @@
 """Viewer: EasyPBR's window with a scene in it."""
 
 import threading
-from collections.abc import Mapping
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -34,8 +36,8 @@ class Viewer:
     """Shows a scene in EasyPBR's window until it is closed; with `run_in_thread` the window runs on its own thread. The window
     follows the scene and the flags: change them under `render_lock`. Flags may be given as keyword arguments, too.
 
-    `registered_keys`: functions by keys, each called with the viewer; or lists of a function, a list of further arguments and a
-    dict of named ones."""
+    `registered_keys`: functions by keys, each called with the viewer before the next frame, on the window's thread; or lists of
+    a function, a list of further arguments and a dict of named ones. They may take `render_lock`."""
 
     render_lock: "threading.RLock"
     render_flags: dict[str, Any]
@@ -72,9 +74,12 @@ class Viewer:
         #: Lights that the camera carries, with their poses in its frame, and the flags that they were made of.
         self._lights: list[tuple[DirectionalLight, NDArray[Any]]] = []
         self._lights_key: tuple[Any, ...] = ()
+        #: Calls of keys that were pressed, for the next frame.
+        self._pressed: deque[Callable[[], object]] = deque()
         view = self._drawing.view
         view.settings["image.size"] = self.viewport_size
         self.update()
+        view.before_draw(self._call_pressed)
         view.before_draw(self._follow)
         view.on_event(self._press, "key_down")
         if auto_start:
@@ -134,15 +139,20 @@ class Viewer:
 
     def _follow(self) -> None:
         """Before each frame. What nothing has changed of is not looked at."""
-        if self._state() != self._taken and self.render_lock.acquire(timeout=_PATIENCE):
-            try:
+        if self._state() == self._taken and not self._drawing.carried:
+            return
+        if not self.render_lock.acquire(timeout=_PATIENCE):
+            return
+        try:
+            if self._state() != self._taken:
                 self.update()
-            finally:
-                self.render_lock.release()
-        self._carry()
+            else:
+                self._carry()
+        finally:
+            self.render_lock.release()
 
     def _carry(self) -> None:
-        """Moves the lights that the camera carries with it."""
+        """Moves the lights that the camera carries with it. Needs `render_lock`."""
         if not self._drawing.carried:
             return
         try:
@@ -154,15 +164,21 @@ class Viewer:
             self._carried = pose
 
     def _press(self, event: "_easypbr.Event") -> bool:
-        """Calls the function of a key; whether there is one."""
+        """Notes the call of a key's function; whether there is one. Events are handled under the view's lock, which who holds
+        `render_lock` may wait for: the function, which may take that one, is called outside."""
         for key, given in list(self.registered_keys.items()):
             if event.key.lower() != ("space" if key == " " else key.lower()):
                 continue
             function, arguments, named = [*given, [], {}][:3] if isinstance(given, (list, tuple)) else (given, [], {})
             if not event.repeat:
-                function(self, *arguments, **(named or {}))
+                self._pressed.append(partial(function, self, *arguments, **(named or {})))
             return True
         return False
+
+    def _call_pressed(self) -> None:
+        """Before each frame. What is left after an exception is called before the next one."""
+        while self._pressed:
+            self._pressed.popleft()()
 
     def start(self) -> None:
         """Opens the window. Raises ContextError without a display."""
