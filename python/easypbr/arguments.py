@@ -4,6 +4,8 @@ import operator
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from . import _easypbr
 from .errors import ArgumentError
 
@@ -11,16 +13,23 @@ from .errors import ArgumentError
 _INT32 = 2**31 - 1
 
 
+def _whole(value: Any) -> int | None:
+    """The whole number that a value is; None: it is none, as booleans are."""
+    if isinstance(value, (bool, np.bool_)):
+        return None
+    try:
+        return operator.index(value)
+    except TypeError:
+        return None
+
+
 def samples_of(samples: Any) -> int | None:
     """A number of samples; None: that of the settings."""
     if samples is None:
         return None
     field = _easypbr.field("image.samples")
-    try:
-        number = operator.index(samples)
-    except TypeError:
-        number = 0
-    if isinstance(samples, bool) or not field.min <= number <= field.max:
+    number = _whole(samples)
+    if number is None or not field.min <= number <= field.max:
         raise ArgumentError(f"samples: expected a whole number from {field.min:g} to {field.max:g}, got {samples!r}")
     return number
 
@@ -35,21 +44,22 @@ def classes_of(classes: Any) -> dict[str, int]:
     for name, value in classes.items():
         if not isinstance(name, str):
             raise ArgumentError(f"classes: expected names of objects, got {name!r}")
-        try:
-            number = operator.index(value)
-        except TypeError:
-            number = _INT32 + 1
-        if isinstance(value, bool) or not -_INT32 - 1 <= number <= _INT32:
+        number = _whole(value)
+        if number is None or not -_INT32 - 1 <= number <= _INT32:
             raise ArgumentError(f"classes[{name!r}]: expected a whole number from {-_INT32 - 1} to {_INT32}, got {value!r}")
         made[name] = number
     return made
 
 
 def missing_names(wanted: Iterable[str], objects: Iterable[str]) -> list[str]:
-    """Names that no object has, and no instance of one: "object/node", "object:part", "object#2"."""
-    shown = tuple(objects)
-    starts = tuple(name + mark for name in shown for mark in "/:#")
-    return [name for name in wanted if name not in shown and not name.startswith(starts)]
+    """Names that are neither an object's nor begin with one's and a mark of instances: "object/node", "object:part",
+    "object#2"."""
+    shown = set(objects)
+
+    def is_known(name: str) -> bool:
+        return name in shown or any(mark in "/:#" and name[:at] in shown for at, mark in enumerate(name))
+
+    return [name for name in wanted if not is_known(name)]
 
 
 def real_of(name: str, value: Any, what: str = "a number") -> float:

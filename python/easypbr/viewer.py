@@ -243,11 +243,12 @@ class Viewer(Sharing):
         and face_id -1; flow is 0 there while the camera moves, too.
 
         `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids (int32) by the objects'
-        names; a name that the scene does not have is logged as a warning, once. Flow needs the `next` or `previous` frame's
-        moment(). Without `amodal` what is hidden of the instances is not measured. `as_`: "numpy" or "torch", whose tensors
-        are made on `device`: with "cuda", color, hdr, depth, distance, position, normals, albedo, roughness, metallic,
-        instance_id and (without labels of elements) semantic_id never leave the GPU when OpenGL draws on it too (depth,
-        distance and position then have the rasteriser's rounding); what else is asked for is copied there."""
+        names; a name that is neither an object's nor begins with one's and "/", ":" or "#" is logged as a warning, once. Flow
+        needs the `next` or `previous` frame's moment(). Without `amodal` what is hidden of the instances is not measured.
+        `as_`: "numpy" or "torch", whose tensors are made on `device`: with "cuda", color, hdr, depth, distance, position,
+        normals, albedo, roughness, metallic, instance_id and (without labels of elements) semantic_id never leave the GPU
+        when OpenGL draws on it too (depth, distance and position then have the rasteriser's rounding); what else is asked
+        for is copied there."""
         if isinstance(names, str):
             names = [names]
         samples = samples_of(samples)
@@ -270,9 +271,9 @@ class Viewer(Sharing):
         return {name: value if name == "instances" else convert(value) for name, value in data.items()}
 
     def _checked_classes(self, classes: Mapping[str, int] | None) -> dict[str, int]:
-        """Of render_layers(), with a warning of names that the scene does not have: once for each."""
+        """Of render_layers(), with a warning of names that are no object's or instance's: once for each."""
         checked = classes_of(classes)
-        for name in missing_names(checked, self.scene.names()):
+        for name in missing_names(checked, self.scene.names()) if checked else ():
             if name not in self._missing_classes:
                 self._missing_classes.add(name)
                 logging.getLogger("easypbr").warning("classes: the scene has no object %r", name)

@@ -49,6 +49,7 @@ def cone():
     ({"rougness": 1}, TypeError, "did you mean 'material.roughness'"),
     ({"samples": "4"}, ValueError, "samples: expected a whole number from 1 to 65536, got '4'"),
     ({"samples": 2.5}, ValueError, "samples: expected a whole number from 1 to 65536, got 2.5"),
+    ({"samples": np.True_}, ValueError, "samples: expected a whole number from 1 to 65536, got True"),
     ({"samples": 0}, ValueError, "samples"),
     ({"roughness": "rough"}, ValueError, "material.roughness"),
 ])  # fmt: skip

@@ -1,10 +1,13 @@
 """Layers and annotations from Python: the arrays agree with each other and with the camera that is published."""
 
+import time
+
 import numpy as np
 import pytest
 
 import easypbr
 from easypbr import ArgumentError, Camera, ContextError, Scene, UnknownNameError, Viewer, shapes
+from easypbr.arguments import missing_names
 
 K = np.array([[210, 0, 70.3], [0, 190, 41.9], [0, 0, 1.0]])
 #: At the origin, looking along the world's -z, y up.
@@ -286,7 +289,7 @@ def test_what_comes_near_is_not_clipped():
     assert view.settings.camera.near == first
 
 
-@pytest.mark.parametrize("id_", [2**31, -(2**31) - 1, 1.5, "1", None, True])
+@pytest.mark.parametrize("id_", [2**31, -(2**31) - 1, 1.5, "1", None, True, np.True_])
 def test_classes_out_of_range_are_named(view, id_):
     # int32 has 2^31 numbers from 0 on, and as many below.
     with pytest.raises(ArgumentError, match="classes\\['ball'\\]: expected a whole number from -2147483648 to 2147483647, got"):
@@ -312,6 +315,19 @@ def test_classes_of_no_object_are_a_warning_once(view, caplog):
     for _ in range(2):
         view.render_layers(["semantic_id"], classes={"ball": 1, "cube": 2, "ball/wheel": 3, "cube:door": 4, "bal": 5})
     assert [record.getMessage() for record in caplog.records] == ["classes: the scene has no object 'bal'"]
+
+
+def test_names_of_many_classes_are_looked_up(view, monkeypatch):
+    """A comparison of each with each would be 3 * 50000^2 = 7.5e9 of them: minutes; look-ups take tenths of a second."""
+    objects = [f"object {number}" for number in range(50000)]
+    wanted = [name + end for name, end in zip(objects, ["", "/a/b", ":c", "#2", "s", "/"] * 10000)]
+    start = time.monotonic()
+    missing = missing_names(wanted, iter(objects))
+    assert time.monotonic() - start < 10
+    assert missing == wanted[4::6], "as 'object 4s'"
+    assert missing_names(["", "/a", "a/b:c"], ["", "a/b"]) == [] and missing_names(["a"], []) == ["a"]
+    monkeypatch.setattr(view.scene, "names", lambda: pytest.fail("asked for without classes"))
+    view.render_layers(["semantic_id"])
 
 
 #: What the first camera decides on by itself.
