@@ -24,18 +24,18 @@ def camera():
 def counted(monkeypatch):
     """Counts the nodes that scenes walk over, and the poses that are computed."""
     counts = {"walked": 0, "matrices": 0}
-    walk, matrix = pyrender.Scene.walk, Node.matrix
+    below, matrix = pyrender.Scene._below, Node.matrix
 
-    def counting(scene):
-        for found in walk(scene):
-            counts["walked"] += 1
-            yield found
+    def counting(tops):
+        found = below(tops)
+        counts["walked"] += len(found)
+        return found
 
     def get(node):
         counts["matrices"] += 1
         return matrix.fget(node)
 
-    monkeypatch.setattr(pyrender.Scene, "walk", counting)
+    monkeypatch.setattr(pyrender.Scene, "_below", staticmethod(counting))
     monkeypatch.setattr(Node, "matrix", property(get, matrix.fset))
     return counts
 
@@ -51,7 +51,7 @@ def test_changes_of_a_tree_do_not_walk_over_it(counted):
     for node in nodes:
         scene.remove_node(node)
     assert scene.nodes == {arm} and not arm.children and not scene.has_node(nodes[0])
-    assert counted["walked"] == 0
+    assert counted["walked"] == 101 + 100, "each node when it is added, and when it is removed"
     assert counted["matrices"] <= 100 * 2 * 2, "a pose is that of a node and of its parents"
 
 
@@ -94,6 +94,73 @@ def test_nodes_have_one_parent_and_are_added_once():
         with pytest.raises(ValueError, match=message):
             scene.add_node(wrong)
     assert scene.nodes == {parent, child}, "what is refused changes nothing"
+
+
+def test_a_node_may_be_appended_and_added():
+    """As pyrender 0.1.45 takes it."""
+    scene = pyrender.Scene()
+    root, other = scene.add(camera(), pose=at(1, 0, 0)), scene.add(camera())
+    child = Node(children=[Node()])
+    root.children.append(child)
+    scene.add_node(child, parent_node=root)
+    assert root.children == [child] and scene.nodes == {root, other, child, *child.children}
+    assert scene.get_pose(child)[0, 3] == 1
+    for parent in (None, other):
+        with pytest.raises(ValueError, match="the node is in the scene already"):
+            scene.add_node(child, parent)
+    with pytest.raises(ValueError, match="the node is in the scene already"):
+        scene.add_node(root)
+
+
+def looped():
+    a, b = Node(), Node()
+    a.children, b.children = [b], [a]
+    return a, b
+
+
+@pytest.mark.parametrize("wrong", [
+    lambda root, other: other.children.append(root.children[0]),
+    lambda root, other: root.children.append(other),
+    lambda root, other: root.children.append(root.children[0]),
+    lambda root, other: root.children[0].children.append(root),
+    lambda root, other: root.children[0].children.append(root.children[0]),
+    lambda root, other: root.children[0].children.extend(looped()),
+])  # fmt: skip
+def test_lists_of_children_that_are_no_tree_are_refused(wrong):
+    scene = pyrender.Scene()
+    root, other = scene.add(camera()), scene.add(camera())
+    child = scene.add(camera(), parent_node=root)
+    wrong(root, other)
+    lists = [list(node.children) for node in (root, other, child)]
+    for look in (
+        lambda: scene.nodes, lambda: scene.remove_node(child), lambda: scene.remove_node(root), lambda: scene.add(camera()),
+        lambda: scene.get_pose(child), lambda: list(scene.walk()), lambda: scene.bounds, lambda: scene.main_camera_node,
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match="Scene: expected nodes with one parent each"):
+            look()
+    assert [node.children for node in (root, other, child)] == lists, "what is refused changes nothing"
+    root.children, other.children, child.children = [child], [], []
+    assert scene.nodes == {root, other, child}
+
+
+def test_cycles_are_no_scenes():
+    a, b = looped()
+    for given in ([a, b], [a], [Node(), a, b]):
+        with pytest.raises(ValueError, match="Scene: expected nodes with one parent each"):
+            pyrender.Scene(given)
+
+
+def test_a_shallow_copy_has_roots_of_its_own():
+    scene = pyrender.Scene()
+    root = scene.add(camera())
+    other = copy.copy(scene)
+    added = other.add(camera())
+    other.remove_node(root)
+    for made, node in ((scene, root), (other, added)):
+        assert made.nodes == {node} and [found for found, _, _ in made.walk()] == [node]
+    assert (scene.main_camera_node, other.main_camera_node) == (root, added)
+    scene.clear()
+    assert other.nodes == {added}
 
 
 def test_the_main_camera_is_the_first_that_was_added():

@@ -1,6 +1,6 @@
 """Scenes: trees of nodes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,8 @@ from .colors import color
 from .light import DirectionalLight, Light, PointLight, SpotLight
 from .mesh import Mesh
 from .node import Node
+
+_ONE_PARENT = "Scene: expected nodes with one parent each"
 
 
 class Scene(Bounded):
@@ -29,7 +31,8 @@ class Scene(Bounded):
     ) -> None:
         self.name = name
         self.bg_color, self.ambient_light = bg_color, ambient_light
-        self._roots: list[Node] = []
+        #: In the order in which they were added: keys, for a list is searched for what is removed.
+        self._roots: dict[Node, None] = {}
         #: The parent of each node, None for roots, in the order in which they were added; as of the change `_seen` of trees.
         self._parents: dict[Node, Node | None] = {}
         self._seen = Latest.tree
@@ -38,9 +41,12 @@ class Scene(Bounded):
         for node in nodes or ():
             if id(node) not in inner:
                 self.add_node(node)
+        if any(node not in self._parents for node in nodes or ()):
+            raise ValueError(_ONE_PARENT)  # A cycle, which nothing leads into.
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
+        self._roots, self._parents = dict.fromkeys(self._roots), dict(self._parents)  # copy.copy() gives those of the original.
         self._seen = -1  # Numbers of changes are those of a process.
 
     @property
@@ -62,7 +68,9 @@ class Scene(Bounded):
         note()
 
     def walk(self) -> Iterator[tuple[Node, Node | None, NDArray[Any]]]:
-        """Each node with its parent and its 4 x 4 pose in the world, parents first."""
+        """Each node with its parent and its 4 x 4 pose in the world, parents first. Raises ValueError as all do that look at
+        the tree: where lists of children give a node two parents, or a cycle."""
+        self._tree()
         waiting: list[tuple[Node, Node | None, NDArray[Any]]] = [(node, None, np.eye(4)) for node in reversed(self._roots)]
         while waiting:
             node, parent, above = waiting.pop()
@@ -74,7 +82,7 @@ class Scene(Bounded):
         """The parent of each node, after lists of children may have been changed by others."""
         if self._seen != Latest.tree:
             seen = Latest.tree
-            found = {node: parent for node, parent, _ in self.walk()}
+            found = self._below((root, None) for root in self._roots)
             kept = {node: found.pop(node) for node in self._parents if node in found}
             self._parents, self._seen = kept | found, seen
         return self._parents
@@ -189,16 +197,21 @@ class Scene(Bounded):
         return node
 
     def add_node(self, node: Node, parent_node: Node | None = None) -> None:
-        """Adds a node with its children."""
+        """Adds a node with its children. One that was appended to the parent's list of children is there already."""
         tree = self._tree()
+        if parent_node is not None and tree.get(node) is parent_node:
+            return
         if node in tree:
             raise ValueError("Scene.add_node: the node is in the scene already")
         if parent_node is not None and parent_node not in tree:
             raise ValueError("Scene.add_node: the parent is not in the scene")
-        added = self._below(node, parent_node)
+        added = self._below([(node, parent_node)])
         if any(below in tree for below in added):
             raise ValueError("Scene.add_node: a child of the node is in the scene already")
-        (self._roots if parent_node is None else parent_node.children).append(node)
+        if parent_node is None:
+            self._roots[node] = None
+        else:
+            parent_node.children.append(node)
         tree.update(added)
         self._note(parent_node)
 
@@ -211,21 +224,24 @@ class Scene(Bounded):
         if node not in tree:
             raise ValueError("Scene.remove_node: the node is not in the scene")
         parent = tree[node]
-        removed = self._below(node, parent)
-        (self._roots if parent is None else parent.children).remove(node)
+        removed = self._below([(node, parent)])
+        if parent is None:
+            del self._roots[node]
+        else:
+            parent.children.remove(node)
         for below in removed:
-            tree.pop(below, None)
+            del tree[below]
         self._note(parent)
 
     @staticmethod
-    def _below(node: Node, parent: Node | None) -> dict[Node, Node | None]:
-        """A node and all that is below it, with the parent of each."""
+    def _below(tops: Iterable[tuple[Node, Node | None]]) -> dict[Node, Node | None]:
+        """Nodes, given with their parents, and all that is below them, with the parent of each; parents first."""
         found: dict[Node, Node | None] = {}
-        waiting = [(node, parent)]
+        waiting = list(tops)[::-1]
         while waiting:
             node, parent = waiting.pop()
             if node in found:
-                raise ValueError("Scene: expected nodes with one parent each")
+                raise ValueError(_ONE_PARENT)
             found[node] = parent
             waiting.extend((child, node) for child in reversed(node.children))
         return found
