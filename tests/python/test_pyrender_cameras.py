@@ -152,7 +152,41 @@ def test_matrices_that_cannot_be_drawn_are_refused(camera, message):
         seen(camera, np.eye(4), [0, 0, -2], (32, 32))
 
 
+@pytest.mark.parametrize("scale", [(0.02, 0.5), (0.5, 0.02), (1e-9, 1)])
+def test_pixels_may_be_sixteen_times_as_long_as_wide(scale):
+    """0.5 / 0.02 is 25: the image would be drawn with 25 times as many rows, or columns."""
+    camera = WeakPerspectiveCamera(scale, (0, 0))
+    message = r"WeakPerspectiveCamera.get_projection_matrix\(\): expected pixels at most 16 times as long as wide"
+    with pytest.raises(ValueError, match=message):
+        seen(camera, np.eye(4), [0, 0, 0], (32, 32))
+    # Of a square of a metre 0.05 * 64 / 2 = 1.6 columns, centres of two of them, and 0.75 * 64 / 2 = 24 rows.
+    scene = pyrender.Scene()
+    corners = [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]]
+    scene.add(pyrender.Mesh([pyrender.Primitive(corners, indices=[[0, 1, 2], [0, 2, 3]])]))
+    scene.add(WeakPerspectiveCamera((0.05, 0.75), (0, 0)))
+    rows, columns = np.nonzero(pyrender.OffscreenRenderer(64, 64).render(scene, flags=RenderFlags.DEPTH_ONLY))
+    assert (set(columns), set(rows)) == ({31, 32}, set(range(20, 44)))
+
+
 # Names.
+
+
+@pytest.mark.parametrize("value, channels, expected", [
+    ([[0.5], [0.25]], 4, [[0.5, 1, 1, 1], [0.25, 1, 1, 1]]), ([[0.5, 0.25], [0, 1]], 3, [[0.5, 0.25, 1], [0, 1, 1]]),
+    ([[255, 0, 51], [0, 0, 0]], 4, [[1, 0, 0.2, 1], [0, 0, 0, 1]]), ([0.5, 0.25, 0, 0.5], 3, [[0.5, 0.25, 0]] * 2),
+    ([0.5], 2, [[0.5, 1]] * 2), (np.full((2, 6), 0.5), 5, np.full((2, 5), 0.5)),
+])  # fmt: skip
+def test_arrays_of_colors_are_filled_with_ones_and_cut(value, channels, expected):
+    """As pyrender 0.1.45 does."""
+    found = pyrender.utils.format_color_array(value, (2, channels))
+    assert found.dtype == np.float32
+    np.testing.assert_array_equal(found, np.float32(expected))
+
+
+@pytest.mark.parametrize("value", [0.5, [[0.5] * 3] * 3, np.zeros((2, 2, 3))])
+def test_arrays_of_colors_of_other_dimensions_are_refused(value):
+    with pytest.raises(ValueError, match="^format_color_array: expected 2 rows"):
+        pyrender.utils.format_color_array(value, (2, 4))
 
 
 def test_modules_of_pyrender_are_there():

@@ -127,6 +127,45 @@ def test_lights_of_the_camera_wait_for_something_to_place_a_camera_for():
     assert viewer._drawing.view.scene.light_names() == ["camera light 0"]
 
 
+# Sizes.
+
+
+def extent(picture):
+    """Columns and rows that something is drawn in."""
+    rows, columns = np.nonzero(picture[:, :, :3].max(axis=2))
+    return np.ptp(columns) + 1, np.ptp(rows) + 1
+
+
+@pytest.mark.parametrize("pixels", [(96, 72), (144, 72), (72, 144), (288, 216)])
+def test_a_perspective_camera_follows_a_window_that_is_resized(pixels):
+    """As pyrender's, whose aspectRatio is the window's: a square of two metres, three before the camera, is square, and
+    1 / (3 * tan(0.45)) of the height."""
+    view = viewer_of(scene_of(square())[0])._drawing.view
+    expected = pixels[1] / (3 * np.tan(0.45))
+    # One pixel: edges are covered in parts on both sides.
+    assert extent(view.render(pixels)) == pytest.approx((min(expected, pixels[0]), expected), abs=1.1)
+
+
+def test_parallel_lines_of_sight_have_square_pixels_in_the_window():
+    class Stretched(pyrender.OrthographicCamera):
+        def get_projection_matrix(self, width=None, height=None):
+            P = super().get_projection_matrix(width, height)
+            P[0, 0] /= 2
+            return P
+
+    scene = pyrender.Scene(bg_color=[0.0, 0, 0])
+    scene.add(square(), pose=at(0, 0, -3))
+    scene.add(Stretched(2.0, 2.0))
+    # 72 rows are 2 * ymag = 4 metres: 36 are the square's two.
+    assert extent(frame(viewer_of(scene))) == pytest.approx((36, 36), abs=1.1)
+
+
+@pytest.mark.parametrize("pixels", [np.array([96, 72]), [96, 72], (np.int64(96), 72)])
+def test_sizes_may_be_arrays(pixels):
+    viewer = pyrender.Viewer(scene_of(square())[0], viewport_size=pixels, auto_start=False)
+    assert viewer.viewport_size == (96, 72) and viewer._drawing.view.render().shape[:2] == (72, 96)
+
+
 # Changes.
 
 

@@ -10,10 +10,12 @@ from ... import _easypbr
 from ...errors import ArgumentError
 from .camera import Camera, OrthographicCamera
 
-#: Shear of a pose that is taken for rounding and left out: a third decimal at most.
+#: Largest shear of a pose that counts as rounding: that of a rotation of two decimals.
 _SHEAR = 0.01
 #: Pixels by which columns and rows may differ at an edge of the image and count as squares.
 _SQUARE = 0.1
+#: Most times that pixels may be as long as they are wide, or as wide as long: the image that is drawn is as much larger.
+_MOST_STRETCH = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +85,10 @@ def projection_of(camera: Camera, pose: NDArray[Any], width: int, height: int) -
     if is_parallel:
         own = _easypbr.Camera.from_opengl(place)
         own.projection = "orthographic"
-        own.ortho_height, drawn, rows, columns = _squares(P, width, height)
+        own.ortho_height, drawn, rows, columns = _squares(P, width, height, who)
+    elif P[0, 2] == P[1, 2] == 0 and abs(P[0, 0] * width / (P[1, 1] * height) - 1) <= 1e-9:
+        # Without intrinsics in pixels, which a window of another shape would stretch.
+        own = _easypbr.Camera.from_opengl(place, float(np.degrees(2 * np.arctan(1 / P[1, 1]))))
     else:
         K = np.array([[P[0, 0] * width / 2, 0, (1 - P[0, 2]) * width / 2 - 0.5],
                       [0, P[1, 1] * height / 2, (1 + P[1, 2]) * height / 2 - 0.5], [0, 0, 1]])  # fmt: skip
@@ -146,9 +151,13 @@ def _planes(P: NDArray[Any], is_parallel: bool, who: str) -> tuple[float, float 
     return float(f / (e - 1)), float(f / (e + 1)) if e < -1 - 1e-12 else None
 
 
-def _squares(P: NDArray[Any], width: int, height: int) -> tuple[float, tuple[int, int], Any, Any]:
+def _squares(P: NDArray[Any], width: int, height: int, who: str) -> tuple[float, tuple[int, int], Any, Any]:
     """Height of the view volume, the size of an image with square pixels, and which of its rows and columns are shown."""
     columns, rows = width * P[0, 0], height * P[1, 1]  # Twice as many as are a metre.
+    if not 1 / _MOST_STRETCH <= columns / rows <= _MOST_STRETCH:
+        expected = f"expected pixels at most {_MOST_STRETCH} times as long as wide, or as wide as long"
+        sizes = f"got {2 / columns:g} x {2 / rows:g} m in an image of {width} x {height}"
+        raise ArgumentError(f"{who}: {expected}; {sizes}, of P[0, 0] = {P[0, 0]:g} and P[1, 1] = {P[1, 1]:g}")
     if abs(columns / rows - 1) * max(width, height) / 2 < _SQUARE:
         return 2 / P[1, 1], (width, height), None, None
     if columns > rows:

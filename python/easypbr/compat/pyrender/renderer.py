@@ -130,7 +130,7 @@ def _rgb(color: Any) -> NDArray[Any]:
     given = np.asarray(color)
     is_number = given.dtype.kind in "buif" and (given.ndim == 0 or given.shape in ((3,), (4,)))
     if not is_number or not ((given == np.floor(given)) & (given >= 0) & (given <= 255)).all():
-        expected = "expected whole numbers from 0 to 255, one or three for a node"
+        expected = "expected whole numbers from 0 to 255 for each node, one, three or four (the fourth is not used)"
         raise ArgumentError(f"render: seg_node_map: {expected}, got {color!r}")
     return np.broadcast_to(given if given.ndim == 0 else given[:3], 3).astype(np.uint8)
 

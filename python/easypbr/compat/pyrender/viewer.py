@@ -65,7 +65,8 @@ class Viewer:
                             f"got {', '.join(unknown)}")  # fmt: skip
         self.registered_keys = dict(registered_keys or {})
         self.run_in_thread = run_in_thread
-        self.viewport_size = viewport_size or (640, 480)
+        width, height = (640, 480) if viewport_size is None else viewport_size
+        self.viewport_size = int(width), int(height)
         self._drawing = Drawing()
         #: What was taken over last: of the scene and the flags; of the camera; the pose that lights were carried to.
         self._taken: tuple[Any, ...] = ()
