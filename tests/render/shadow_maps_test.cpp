@@ -75,10 +75,11 @@ TEST_F(ShadowCache, ALightDrawsItsOwn) {
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.intensity *= 2; }); }), 0u);
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.color = Vec3(1, 0, 0); }); }),
               0u);
-    // Of 0.3 and 0.29 the widest penumbra is from 1/32 to 1/16 wide, the power of two for which there is
-    // room; of 0.1 it needs none.
+    // Penumbrae of 0.3 and 0.29 need no room. Those of 1 and 0.95 have a radius from 1/16 to 1/8, the power
+    // of two for which there is room.
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.radius = 0.29f; }); }), 0u);
-    EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.radius = 0.1f; }); }), 1u);
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.radius = 1; }); }), 1u);
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.radius = 0.95f; }); }), 0u);
     EXPECT_EQ(drawn_by([&](Session&) { change_light("lamp", [](Light& l) { l.casts_shadows = false; }); }),
               0u);
 }

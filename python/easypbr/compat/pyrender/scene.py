@@ -45,7 +45,7 @@ class Scene(Bounded):
             raise ValueError(_ONE_PARENT)  # A cycle, which nothing leads into.
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
+        vars(self).update(state)
         self._roots, self._parents = dict.fromkeys(self._roots), dict(self._parents)  # copy.copy() gives those of the original.
         self._seen = -1  # Numbers of changes are those of a process.
 

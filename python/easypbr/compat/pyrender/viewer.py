@@ -63,7 +63,7 @@ class Viewer:
         if unknown:
             raise TypeError(f"Viewer: expected keyword arguments out of {', '.join([*_RENDER_FLAGS, *_VIEWER_FLAGS])}; "
                             f"got {', '.join(unknown)}")  # fmt: skip
-        self.registered_keys = dict(registered_keys or {})
+        self.registered_keys: dict[str, Any] = dict(registered_keys or {})
         self.run_in_thread = run_in_thread
         width, height = (640, 480) if viewport_size is None else viewport_size
         self.viewport_size = int(width), int(height)
