@@ -22,11 +22,8 @@ Image picture_from_above(const Scene& scene, bool native) {
     return session.render({std::nullopt, 1, app::Encoding::srgb8});
 }
 
-}  // namespace
-
-// Unlit scalars on a coarse mesh: the value is interpolated, then mapped, so that a pixel shows the colour of
-// its own value.
-TEST(Colors, OfValuesAreThoseOfTheTable) {
+/// An unlit square that is coloured by x, from -1 to 1.
+Mesh square_of_values() {
     Mesh mesh = facing_square(1);
     mesh.edit([](MeshData& d) {
         Array1f::Dense values(4);
@@ -35,6 +32,15 @@ TEST(Colors, OfValuesAreThoseOfTheTable) {
         d.style.lit = false;
         d.style.color_by = ColorBy::scalar;
     });
+    return mesh;
+}
+
+}  // namespace
+
+// Unlit scalars on a coarse mesh: the value is interpolated, then mapped, so that a pixel shows the colour of
+// its own value.
+TEST(Colors, OfValuesAreThoseOfTheTable) {
+    const Mesh mesh = square_of_values();
     Scene scene;
     scene.show(mesh, "square");
     app::Session session = plain_session(scene, 128);
@@ -116,13 +122,8 @@ TEST(Colors, OfValuesAreThoseOfTheTableInLargeMeshes) {
 
 // A chosen range that ends inside a triangle: what is beyond has the end's colour, what is within its own.
 TEST(Colors, OfAChosenRangeStayWhereTheirValuesAre) {
-    Mesh mesh = facing_square(1);
+    Mesh mesh = square_of_values();
     mesh.edit([](MeshData& d) {
-        Array1f::Dense values(4);
-        for (int i = 0; i < 4; ++i) values[i] = d.V(i, 0);
-        d.scalars = {{"x", Array1f(values)}};
-        d.style.lit = false;
-        d.style.color_by = ColorBy::scalar;
         d.style.colormap = Colormap::grey;
         d.style.color_min = -0.25f;
         d.style.color_max = 0.5f;

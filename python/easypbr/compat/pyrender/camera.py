@@ -13,7 +13,7 @@ from .constants import DEFAULT_Z_FAR, DEFAULT_Z_NEAR
 
 class Camera(Noted, ABC):
     """What all cameras have: a name and the depths that they see, in metres. A class of your own says by
-    get_projection_matrix() what is drawn: parallel lines of sight, or a pinhole; its depths are what pyrender computes
+    get_projection_matrix() what is drawn: an orthographic or a perspective view; its depths are what pyrender computes
     of znear and zfar."""
 
     znear: float

@@ -63,7 +63,7 @@ class Projection:
 
 
 def projection_of(camera: Camera, pose: NDArray[Any], width: int, height: int) -> Projection:
-    """Raises ArgumentError for a matrix that is none of a pinhole or of parallel lines of sight, and for a pose that is
+    """Raises ArgumentError for a matrix that is neither perspective nor orthographic, and for a pose that is
     singular, mirrored or sheared."""
     pose, scale = _rigid(pose)
     who = f"{type(camera).__name__}.get_projection_matrix()"
@@ -131,8 +131,8 @@ def _checked(given: Any, who: str) -> NDArray[Any]:
         allowed[:2, 2] = False  # Oblique lines of sight.
     if allowed[3].sum() != 1 or (np.abs(P[~allowed]) > 1e-9 * np.abs(P).max()).any():
         raise ArgumentError(
-            f"{who}: expected a last row of (0, 0, -1, 0) for a pinhole, P[:2] of [[a, 0, b, c], [0, d, e, f]], "
-            f"or of (0, 0, 0, 1) for parallel lines of sight, P[:2] of [[a, 0, 0, b], [0, c, 0, d]], "
+            f"{who}: expected a last row of (0, 0, -1, 0) for a perspective camera, P[:2] of [[a, 0, b, c], [0, d, e, f]], "
+            f"or of (0, 0, 0, 1) for an orthographic one, P[:2] of [[a, 0, 0, b], [0, c, 0, d]], "
             f"and P[2] of (0, 0, a, b); got {P.tolist()}"
         )
     return np.where(allowed, P, 0)
