@@ -68,8 +68,7 @@ INLINE void store_blended(std::byte* to, const vec4& color, vbool active, bool a
                           const Region& region) {
     const PixelRow row = interleaved(color);
     if (all_active && region.store == Store::replace) {
-        for (int i = 0; i < 4; ++i)
-            Pixel::write_channels(to + Pixel::bytes * size_t(i * lanes / 4), row.v[i]);
+        store_row<Pixel>(to, row);
         return;
     }
     Floats4 pixels[lanes];

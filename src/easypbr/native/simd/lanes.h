@@ -367,13 +367,10 @@ INLINE vfloat step(vfloat edge, vfloat x) {
 INLINE vfloat exp2(vfloat x) {
     x = clamp(x, -126.0f, 127.9f);
     const vfloat whole = floor(x + 0.5f), f = x - whole;
-    vfloat p = 0.000154035f;
-    p = p * f + 0.00133336f;
-    p = p * f + 0.00961813f;
-    p = p * f + 0.0555041f;
-    p = p * f + 0.24022651f;
-    p = p * f + 0.69314718f;
-    p = p * f + 1.0f;
+    // By Estrin's scheme: each of its steps waits for fewer than Horner's rule.
+    const vfloat f2 = f * f, low = (0.69314718f * f + 1.0f) + (0.0555041f * f + 0.24022651f) * f2,
+                 high = (0.00133336f * f + 0.00961813f) + 0.000154035f * f2;
+    const vfloat p = low + high * (f2 * f2);
     return p * as_float((truncated(whole.v) + 127) << 23);
 }
 INLINE vfloat exp(vfloat x) {

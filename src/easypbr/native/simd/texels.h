@@ -43,27 +43,60 @@ INLINE Ints8 widened(Shorts8 v) {
 #endif
 }
 
+/// Four channels of a pixel for each lane, as pictures hold them.
+struct PixelRow {
+    Floats v[4];
+};
+
+#if defined(__AVX2__)
+/// Four channels of 8 pixels, or the pixels of four channels of which each register has half of one and half
+/// of that four further: a transposition of each half.
+INLINE void transpose8(const __m256 (&from)[4], Floats8* to) {
+    const __m256 ab_low = _mm256_unpacklo_ps(from[0], from[1]),
+                 ab_high = _mm256_unpackhi_ps(from[0], from[1]),
+                 cd_low = _mm256_unpacklo_ps(from[2], from[3]),
+                 cd_high = _mm256_unpackhi_ps(from[2], from[3]);
+    to[0] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0x44));
+    to[1] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0xee));
+    to[2] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0x44));
+    to[3] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0xee));
+}
+INLINE void transpose8(const Floats4* p, Floats8* to) {
+    transpose8({_mm256_set_m128(p[4], p[0]), _mm256_set_m128(p[5], p[1]), _mm256_set_m128(p[6], p[2]),
+                _mm256_set_m128(p[7], p[3])},
+               to);
+}
+#endif
+
+#if defined(__AVX2__) && !defined(__AVX512F__)
+// Shuffles across the halves of a register need an index, and of two registers a blend.
+INLINE PixelRow interleaved(const vec4& c) {
+    Floats8 p[4];  // pixels k and k + 4 each
+    transpose8({c.x.v, c.y.v, c.z.v, c.w.v}, p);
+    return {{_mm256_permute2f128_ps(p[0], p[1], 0x20), _mm256_permute2f128_ps(p[2], p[3], 0x20),
+             _mm256_permute2f128_ps(p[0], p[1], 0x31), _mm256_permute2f128_ps(p[2], p[3], 0x31)}};
+}
+INLINE vec4 planar(const PixelRow& row) {
+    Floats8 c[4];
+    transpose8(
+        {_mm256_permute2f128_ps(row.v[0], row.v[2], 0x20), _mm256_permute2f128_ps(row.v[0], row.v[2], 0x31),
+         _mm256_permute2f128_ps(row.v[1], row.v[3], 0x20), _mm256_permute2f128_ps(row.v[1], row.v[3], 0x31)},
+        c);
+    return {vfloat(c[0]), vfloat(c[1]), vfloat(c[2]), vfloat(c[3])};
+}
+#else
 // Values of two vectors by turns, the first halves and the last ones; and every second value of both.
 #if defined(__AVX512F__)
 #define ZIPPED_FIRST 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
 #define ZIPPED_LAST 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
 #define EVEN 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
 #define ODD 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
-#elif defined(__AVX2__)
-#define ZIPPED_FIRST 0, 8, 1, 9, 2, 10, 3, 11
-#define ZIPPED_LAST 4, 12, 5, 13, 6, 14, 7, 15
-#define EVEN 0, 2, 4, 6, 8, 10, 12, 14
-#define ODD 1, 3, 5, 7, 9, 11, 13, 15
 #else
 #define ZIPPED_FIRST 0, 4, 1, 5
 #define ZIPPED_LAST 2, 6, 3, 7
 #define EVEN 0, 2, 4, 6
 #define ODD 1, 3, 5, 7
 #endif
-/// Four channels of a pixel for each lane, as pictures hold them.
-struct PixelRow {
-    Floats v[4];
-};
 INLINE PixelRow interleaved(const vec4& c) {
     const Floats xz0 = __builtin_shufflevector(c.x.v, c.z.v, ZIPPED_FIRST),
                  xz1 = __builtin_shufflevector(c.x.v, c.z.v, ZIPPED_LAST),
@@ -86,19 +119,8 @@ INLINE vec4 planar(const PixelRow& row) {
 #undef ZIPPED_LAST
 #undef ZIPPED_FIRST
 
-#if defined(__AVX2__)
-/// Four channels of 8 pixels: a transposition.
-INLINE void transpose8(const Floats4* p, Floats8* to) {
-    const __m256 a = _mm256_set_m128(p[4], p[0]), b = _mm256_set_m128(p[5], p[1]),
-                 c = _mm256_set_m128(p[6], p[2]), d = _mm256_set_m128(p[7], p[3]);
-    const __m256 ab_low = _mm256_unpacklo_ps(a, b), ab_high = _mm256_unpackhi_ps(a, b),
-                 cd_low = _mm256_unpacklo_ps(c, d), cd_high = _mm256_unpackhi_ps(c, d);
-    to[0] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0x44));
-    to[1] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0xee));
-    to[2] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0x44));
-    to[3] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0xee));
-}
 #endif
+
 /// Four channels of each lane, from one pixel per lane.
 INLINE vec4 planar(const Floats4* pixels) {
 #if defined(__AVX512F__)
@@ -256,12 +278,20 @@ struct ShortPixel {
     }
 };
 
-/// A pixel for each lane, side by side.
+// A pixel for each lane, side by side. Not by loops: GCC 12 would keep their values in memory.
+template <class Pixel>
+INLINE void store_row(std::byte* to, const PixelRow& row) {
+    constexpr size_t step = Pixel::bytes * lanes / 4;
+    Pixel::write_channels(to, row.v[0]);
+    Pixel::write_channels(to + step, row.v[1]);
+    Pixel::write_channels(to + 2 * step, row.v[2]);
+    Pixel::write_channels(to + 3 * step, row.v[3]);
+}
 template <class Pixel>
 INLINE vec4 load_row(const std::byte* from) {
-    PixelRow row;
-    for (int i = 0; i < 4; ++i) row.v[i] = Pixel::read_channels(from + Pixel::bytes * size_t(i * lanes / 4));
-    return planar(row);
+    constexpr size_t step = Pixel::bytes * lanes / 4;
+    return planar({{Pixel::read_channels(from), Pixel::read_channels(from + step),
+                    Pixel::read_channels(from + 2 * step), Pixel::read_channels(from + 3 * step)}});
 }
 /// One pixel per lane.
 template <class Pixel>
