@@ -10,13 +10,13 @@ uniform sampler2D u_material;
 
 layout(location = 0) out vec2 o_normal;
 
-// From a surface to what is seen some pixels beside it, and how much it counts: not where nothing is seen, hardly where
-// something else lies before or behind.
+// From a surface to what is seen some pixels beside it, in radii, whose products floats hold at any scale of the scene; and
+// how much it counts: not where nothing is seen, hardly where something else lies before or behind.
 vec4 neighbor(Surface s, vec2 offset) {
     vec2 pixel = floor(s.pixel + offset) + 0.5, uv = pixel / u_size;
     float depth = textureLod(u_depth_target, uv, 0.0).r;
-    vec3 delta = view_position(pixel, depth) - s.position;
-    float far = dot(delta, delta) / (u_radius * u_radius);
+    vec3 delta = (view_position(pixel, depth) - s.position) / u_radius;
+    float far = dot(delta, delta);
     bool seen = depth > 0.0 && uv == clamp(uv, 0.0, 1.0);
     return seen ? vec4(delta, 1.0 / (1.0 + 16.0 * far * far)) : vec4(0.0);
 }
@@ -55,7 +55,7 @@ vec3 along_surface(Surface s, float depth, vec2 axis) {
 
 // Of the plane through a pixel and its neighbours.
 vec2 surface_normal(Surface s, float depth) {
-    vec3 face = cross(along_surface(s, depth, vec2(0.0, 1.0)), along_surface(s, depth, vec2(1.0, 0.0)));
+    vec3 face = cross(along_surface(s, depth, vec2(0.0, 1.0)) / u_radius, along_surface(s, depth, vec2(1.0, 0.0)) / u_radius);
     float size = length(face);
     face = size > 0.0 ? face / size : s.normal;
     face = dot(face, to_viewer(s.position)) < 0.0 ? -face : face;

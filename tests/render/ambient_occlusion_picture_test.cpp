@@ -316,6 +316,38 @@ TEST(AmbientOcclusion, DarkensRecessesOfClouds) {
     EXPECT_LT(in_corner / corner_count, elsewhere / elsewhere_count - 0.1);
 }
 
+// Normals of points are estimated alike in any unit of length: micrometres in metres, and kilometres.
+// Coordinates are rounded anew by each scale, which turns a normal of 16 bits by a step: less than 0.02 of
+// the light.
+TEST(AmbientOcclusion, OfCloudsIsTheSameAtAnyScale) {
+    const int n = 60;
+    const auto visibility = [&](double scale) {
+        Array3f::Dense V(2 * n * n, 3);
+        for (int i = 0; i < n * n; ++i) {
+            const float u = float(i % n) / n * 2 - 1, v = float(i / n) / n;
+            V.row(2 * i) << u, 0, v;
+            V.row(2 * i + 1) << u, v, 0;
+        }
+        Mesh cloud;
+        cloud.set_V(Array3f(Array3f::Dense(V * float(scale))));
+        Scene scene;
+        scene.show(cloud, "corner");
+        app::Session session = plain_session(scene, 64);
+        session.settings().ssao.enabled = true;
+        session.settings().ssao.radius = float(0.3 * scale);
+        place(session, Vec3d(0, 2, 2) * scale, Vec3d(0, 0.3, 0.3) * scale, 40);
+        return Occlusion(session).visibility;
+    };
+    const Image of_metres = visibility(1);
+    for (const double scale : {1e-9, 1e-6, 1e6}) {
+        const Image scaled = visibility(scale);
+        float largest = 0;
+        for (size_t i = 0; i < scaled.pixels<float>().size(); ++i)
+            largest = std::max(largest, std::abs(scaled.pixels<float>()[i] - of_metres.pixels<float>()[i]));
+        EXPECT_LT(largest, 0.02f) << scale;
+    }
+}
+
 // A tilted plane of points is as open as one of faces, though its splats face the viewer like stairs.
 TEST(AmbientOcclusion, LeavesTiltedCloudsOpen) {
     const int n = 300;
