@@ -311,6 +311,15 @@ const Case cases[] = {
          s.edl.radius = 60;
      },
      1, 100},
+    // Without normals they are points.
+    {"surfels_as_points", [] { return showing(cloud()); },
+     [](Settings& s) {
+         s.style.mode = DrawMode::surfels;
+         s.style.point_size = 200.0f;
+         s.edl.enabled = false;
+         s.ssao.enabled = false;
+     },
+     1, 100},
     {"points_blended", [] { return showing(see_through(cloud())); },
      [](Settings& s) { s.transparency.max_layers = 2; }, 1, 300},
     {"points_occluded", [] { return showing(cloud()); }, occluded},

@@ -6,6 +6,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/render/pipeline/tiles.h"
 #include "easypbr/scene/merge.h"
+#include "shadow_test.h"
 #include "single_splats.h"
 
 namespace easypbr::render::gaussian_splat_test {
@@ -39,6 +40,29 @@ double gaussian(const Eigen::Matrix2d& covariance, const Vec2d& d) {
 
 double least_seen(double alpha) {
     return alpha < 1.0 / 255 ? 0 : alpha;
+}
+
+// A style asks for what a mesh has no data for: the mesh is drawn as points by every kind of light.
+TEST(GaussianSplats, WithoutDataArePoints) {
+    const auto picture = [](DrawMode mode, bool rays, bool paths) {
+        Mesh ball = make_sphere(0.5f, 16);
+        ball.edit([&](MeshData& data) { data.style.mode = mode; });
+        Scene scene;
+        scene.show(ball, "ball");
+        scene.show(rectangle(-2, -2, 2, 2, -0.6f), "behind");
+        app::Session session = session_of(scene, 32);
+        session.settings().environment.enabled = true;
+        session.settings().ssao.enabled = true;
+        session.settings().rays.enabled = rays;
+        session.settings().path.enabled = paths;
+        return render_linear(session, paths ? 4 : 1);
+    };
+    for (const bool rays : {false, true})
+        for (const bool paths : {false, true}) {
+            const Image splats = picture(DrawMode::splats, rays, paths),
+                        points = picture(DrawMode::points, rays, paths);
+            EXPECT_TRUE(std::ranges::equal(splats.bytes(), points.bytes())) << rays << paths;
+        }
 }
 
 // The closed form: before the camera's axis the projection scales by f / z, and 0.3 square pixels are added.

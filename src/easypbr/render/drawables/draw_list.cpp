@@ -103,6 +103,8 @@ void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& lis
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
     set_kind(source, item);
+    // Splats without data, and surfels without normals, are points.
+    item.style.mode = kind;
     item.reaches_beyond = true;
     item.casts = casts;
     if (kind == DrawMode::points) {

@@ -63,7 +63,8 @@ int reach_in_pixels(const SceneSnapshot& scene, const ResolvedSettings& resolved
     const auto primitives = make_primitives(caches);
     int reach = 0;
     for (const auto& object : scene.objects) {
-        const DrawStyle style = resolve_style(*object.mesh, resolved.settings.style);
+        DrawStyle style = resolve_style(*object.mesh, resolved.settings.style);
+        style.mode = primitive_of(*object.mesh, style);
         for (const auto& kind : primitives)
             if (style.visible) reach = std::max(reach, kind->reach_in_pixels(style));
     }
