@@ -85,6 +85,22 @@ TEST(OrbitGrid, KeepsTheContentInAllPictures) {
     EXPECT_LT(closest, 0.2);  // And no further away than that takes.
 }
 
+TEST(OrbitGrid, KeepsTheContentInOrthographicPictures) {
+    Session session = session_of(box());
+    session.settings().camera.projection = Projection::orthographic;
+    const Points V = corners();
+    double closest = std::numeric_limits<double>::infinity();
+    for (const Camera& camera : orbit_grid(session, 12, 5, 25).cameras)
+        for (Eigen::Index i = 0; i < V.rows(); ++i) {
+            const Vec3d p = camera.T_world_cam.inverse() * Vec3d(V.row(i).transpose().cast<double>()),
+                        part = 2 * p / camera.ortho_height;
+            EXPECT_LT(p.z(), 0);
+            closest = std::min({closest, 1 - std::abs(part.x()) * 90 / 160, 1 - std::abs(part.y())});
+        }
+    EXPECT_GT(closest, 0);
+    EXPECT_LT(closest, 0.2);
+}
+
 TEST(OrbitGrid, StaysBelowTheTop) {
     Session session = session_of(box());
     session.settings().camera.elevation_deg = 80;

@@ -440,6 +440,23 @@ TEST(Turntable, KeepsTheContentInThePicture) {
     EXPECT_LT((turntable(session, 1).pose(0).translation() - Vec3d(5, 0, 9)).norm(), 1e-12);
 }
 
+// The height of an orthographic picture holds the content from every side; one that was chosen stays.
+TEST(Turntable, KeepsTheContentInOrthographicPictures) {
+    Scene scene;
+    Mesh bar = make_box(Vec3(0.2f, 0.3f, 4));
+    bar.translate({5, 0, 0});
+    scene.show(bar, "bar");
+    Session session(scene);
+    session.settings().image.size = Vec2i(96, 64);
+    session.settings().camera.projection = Projection::orthographic;
+    const CameraPath path = turntable(session, 1);
+    const double nearest = nearest_border(path, session.camera(), bar);
+    EXPECT_GT(nearest, 0.049);
+    EXPECT_LT(nearest, 0.09);
+    session.settings().camera.ortho_height = 1;
+    EXPECT_EQ(turntable(session, 1).camera(0.3, session.camera()).ortho_height, 1);
+}
+
 // A small box goes 2 units along x in 4 seconds. A turn while it plays shows it whole wherever it is, around
 // the middle of its way; it is afterwards where it was.
 TEST(Turntable, KeepsWhatAnAnimationMovesInThePicture) {

@@ -6,6 +6,7 @@
 
 #include "easypbr/core/error.h"
 #include "io/temporary_folder.h"
+#include "refusal.h"
 
 namespace easypbr::io::camera_path_test {
 namespace {
@@ -45,6 +46,22 @@ TEST(CameraPathFile, HoldsOrbits) {
     EXPECT_FALSE(read.is_closed());
     for (const double t : orbit.times(5))
         EXPECT_LT((read.pose(t).matrix() - orbit.pose(t).matrix()).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(CameraPathFile, HoldsTheHeightOfOrthographicOrbits) {
+    Camera start = Camera::look_at(Vec3d(1, 2, 3), Vec3d(0, 0.5, 0)), like = start;
+    start.projection = like.projection = Projection::orthographic;
+    start.ortho_height = 7.5;
+    const CameraPath orbit = CameraPath::orbit(start, Vec3d::Zero());
+    const std::string text = to_json(orbit);
+    EXPECT_EQ(orbit.camera(0.5, like).ortho_height, 7.5);
+    EXPECT_EQ(parse_camera_path(text, "text").camera(0.5, like).ortho_height, 7.5);
+    std::string flat = text;
+    flat.replace(flat.find("7.5"), 3, "0.0");
+    EXPECT_EQ(refusal<FormatError>([&] { parse_camera_path(flat, "text"); }),
+              "text: orbit: expected an ortho_height above 0");
+    like.projection = Projection::perspective;
+    EXPECT_EQ(orbit.camera(0.5, like).ortho_height, like.ortho_height);
 }
 
 TEST(CameraPathFile, TakesMatricesInBothAxesAndTargets) {

@@ -55,8 +55,9 @@ class CameraPath {
     CameraPath& operator=(const CameraPath& other) = default;
 
     /// A circle around the line through `center` along `axis`, at constant speed but for `ease`, from the
-    /// camera's pose on; the camera turns with it. Closed when the angle is a multiple of 360 degrees. Throws
-    /// ArgumentError for an axis without length, an angle of 0, or a duration that is not above 0.
+    /// camera's pose on, with its height if it is orthographic; the camera turns with it. Closed when the
+    /// angle is a multiple of 360 degrees. Throws ArgumentError for an axis without length, an angle of 0, or
+    /// a duration that is not above 0.
     static CameraPath orbit(const Camera& start, const Vec3d& center, const Vec3d& axis = {0, 1, 0},
                             double angle_deg = 360, double duration_s = 4, PathEase ease = PathEase::none);
 
@@ -65,6 +66,7 @@ class CameraPath {
         Eigen::Isometry3d T_world_cam;
         Vec3d center, axis;
         double angle_deg;
+        std::optional<double> ortho_height;  ///< of an orthographic camera
     };
 
     double duration_s() const { return duration_s_; }
@@ -82,7 +84,8 @@ class CameraPath {
     Eigen::Isometry3d pose(double time_s) const;
     /// The angle of view at a time; none when the keys have none.
     std::optional<double> fov_y_deg(double time_s) const;
-    /// `like` at the path's pose, with the path's angle of view when it has one.
+    /// `like` at the path's pose, with the path's angle of view when it has one; an orthographic one with the
+    /// height of an orbit that has one.
     Camera camera(double time_s, Camera like = {}) const;
 
     /// `count` times evenly from start to end; of a closed path the end, which is the start, is left out.

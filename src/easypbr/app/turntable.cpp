@@ -36,43 +36,30 @@ Cylinder swept(const SceneSnapshot& scene, const Vec3d& axis) {
     return swept;
 }
 
-/// The part of a picture that content is to stay in, per unit of depth: where its middle is from the optical
-/// axis, and half of its sides.
+/// The part of a picture that content is to stay in, per unit of depth, or of half an orthographic picture's
+/// height: where its middle is from the optical axis, and half of its sides.
 struct FreePart {
     Vec2d middle, half;
 };
 
+bool is_orthographic(const Camera& camera) {
+    return camera.projection == Projection::orthographic;
+}
+
 FreePart free_part(const Camera& lens, double margin, const Vec2i& size, const Insets& insets) {
-    const double aspect = double(size.x()) / size.y(), tangent = std::tan(radians(lens.fov_y_deg) / 2);
+    const double aspect = double(size.x()) / size.y(),
+                 tangent = is_orthographic(lens) ? 1 : std::tan(radians(lens.fov_y_deg) / 2);
     const detail::Edges e = detail::edges_of({aspect, insets}, margin);
     const auto across = [&](double part) { return tangent * part * size.x() / size.y(); };
     return {{across((e.right - e.left) / 2), tangent * ((e.top - e.bottom) / 2)},
             {across((e.right + e.left) / 2), tangent * ((e.top + e.bottom) / 2)}};
 }
 
-/// The distance from which a camera sees all of the cylinder, whose middle is seen in the middle m of the
-/// part: a point p (from the cylinder's middle, in the camera's axes) is in the part, h to each side, from
-/// d >= |x + m z| / h + z on.
-double distance_for(const Cylinder& cylinder, const Mat3d& R_world_cam, const FreePart& part) {
-    constexpr int directions = 256;
-    const Vec3d side = cylinder.axis.unitOrthogonal(), other = cylinder.axis.cross(side);
-    double distance = 0;
-    for (int i = 0; i < directions; ++i) {
-        const double angle = 2 * pi * i / directions;
-        const Vec3d rim = cylinder.radius * (std::cos(angle) * side + std::sin(angle) * other);
-        for (const double end : {-1.0, 1.0}) {
-            const Vec3d p = R_world_cam.transpose() * (rim + end * cylinder.half_height * cylinder.axis);
-            for (int axis = 0; axis < 2; ++axis)
-                distance = std::max(distance,
-                                    std::abs(p[axis] + part.middle[axis] * p.z()) / part.half[axis] + p.z());
-        }
-    }
-    return distance;
-}
-
 bool is_automatic(const CameraSettings& camera) {
+    const bool has_free_size =
+        camera.projection == Projection::perspective || !camera.ortho_height.is_pinned();
     return camera.pose.empty() && !camera.position.is_pinned() && !camera.target.is_pinned() &&
-           camera.projection == Projection::perspective && camera.intrinsics.empty();
+           camera.intrinsics.empty() && has_free_size;
 }
 
 /// What a camera is turned around, and how far away it is for all of its directions.
@@ -80,7 +67,7 @@ struct Round {
     ResolvedSettings resolved;
     Cylinder content;
     Camera camera;
-    bool fits = false;  ///< the distance is free
+    bool fits = false;  ///< the distance, or the height of an orthographic picture, is free
     FreePart part;
 };
 
@@ -101,17 +88,48 @@ Round round_of(Session& session, const Vec2i& size) {
     return round_of(session, session.resolve(size), session.scene().snapshot(), size);
 }
 
-void place_at(Camera& camera, const Round& round, double distance) {
+/// The distance from which a camera sees all of the cylinder, whose middle is seen in the middle m of the
+/// part, or half of the height of an orthographic picture of it: a point p (from the cylinder's middle, in
+/// the camera's axes) is in the part, h to each side, from d >= |x + m z| / h + z on; in an orthographic
+/// picture from |x| / h on.
+double reach_for(const Round& round, const Camera& camera) {
+    constexpr int directions = 256;
+    const Cylinder& cylinder = round.content;
+    const FreePart& part = round.part;
+    const Vec3d side = cylinder.axis.unitOrthogonal(), other = cylinder.axis.cross(side);
+    const Mat3d R_cam_world = camera.T_world_cam.linear().transpose();
+    const bool converges = !is_orthographic(camera);
+    double reach = 0;
+    for (int i = 0; i < directions; ++i) {
+        const double angle = 2 * pi * i / directions;
+        const Vec3d rim = cylinder.radius * (std::cos(angle) * side + std::sin(angle) * other);
+        for (const double end : {-1.0, 1.0}) {
+            const Vec3d p = R_cam_world * (rim + end * cylinder.half_height * cylinder.axis);
+            const double z = converges ? p.z() : 0;
+            for (int axis = 0; axis < 2; ++axis)
+                reach = std::max(reach, std::abs(p[axis] + part.middle[axis] * z) / part.half[axis] + z);
+        }
+    }
+    return reach;
+}
+
+/// `reach`: see reach_for().
+void place_at(Camera& camera, const Round& round, double reach) {
     const Mat3d axes = camera.T_world_cam.linear();
-    const Vec2d aside = round.part.middle * distance;
+    const Vec2d aside = round.part.middle * reach;
+    double distance = reach;
+    if (is_orthographic(camera)) {
+        camera.ortho_height = 2 * reach;
+        // Anywhere before all of it.
+        distance = 2 * std::hypot(round.content.radius, round.content.half_height);
+    }
     camera.T_world_cam.translation() =
         round.content.center + axes.col(2) * distance - axes.leftCols<2>() * aside;
 }
 
 CameraPath turn_around(const Round& round, double duration_s) {
     Camera camera = round.camera;
-    if (round.fits)
-        place_at(camera, round, distance_for(round.content, camera.T_world_cam.linear(), round.part));
+    if (round.fits) place_at(camera, round, reach_for(round, camera));
     return CameraPath::orbit(camera, round.content.center, round.content.axis, 360, duration_s);
 }
 
@@ -174,17 +192,15 @@ OrbitGrid orbit_grid(Session& session, int columns, int rows, double row_step_de
     const double elevation = std::asin(std::clamp(sine, -1.0, 1.0)) * 180 / pi;
     OrbitGrid grid{columns, {}, -lowest_step(elevation, rows, row_step_deg), {}};
     std::vector<Camera> firsts;
-    double distance = 0;
+    double reach = 0;
     for (int row = 0; row < rows; ++row) {
         const double up = (row - grid.start_row) * row_step_deg;
         grid.elevations_deg.push_back(elevation + up);
         firsts.push_back(raised(round, up));
-        if (round.fits)
-            distance = std::max(distance,
-                                distance_for(round.content, firsts.back().T_world_cam.linear(), round.part));
+        if (round.fits) reach = std::max(reach, reach_for(round, firsts.back()));
     }
     for (Camera& first : firsts) {
-        if (round.fits) place_at(first, round, distance);
+        if (round.fits) place_at(first, round, reach);
         const CameraPath path = CameraPath::orbit(first, round.content.center, round.content.axis, 360, 1);
         for (int column = 0; column < columns; ++column)
             grid.cameras.push_back(path.camera(double(column) / columns, first));

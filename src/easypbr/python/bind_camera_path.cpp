@@ -98,7 +98,7 @@ void bind_camera_path_makers(nb::class_<CameraPath>& path) {
                     "numpy.typing.ArrayLike | None = None, angle_deg: float = 360.0, duration_s: float = "
                     "4.0, ease: str = 'none') -> CameraPath"),
             "Circle that starts at the camera's pose, around the line through `center` along `axis`, default "
-            "(0, 1, 0).")
+            "(0, 1, 0). Orthographic cameras have the height of that one all the way.")
         .def_static(
             "load",
             [](const std::filesystem::path& file) {

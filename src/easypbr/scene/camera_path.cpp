@@ -236,7 +236,8 @@ CameraPath CameraPath::orbit(const Camera& start, const Vec3d& center, const Vec
         throw ArgumentError(
             fmt::format("camera orbit: expected a duration above 0 seconds, got {}", duration_s));
     CameraPath path;
-    path.orbit_ = Orbit{start.T_world_cam, center, axis.stableNormalized(), angle_deg};
+    path.orbit_ = Orbit{start.T_world_cam, center, axis.stableNormalized(), angle_deg, {}};
+    if (start.projection == Projection::orthographic) path.orbit_->ortho_height = start.ortho_height;
     path.options_.ease = ease;
     path.options_.closed = std::abs(std::remainder(angle_deg, 360.0)) < 1e-9;
     path.duration_s_ = duration_s;
@@ -308,6 +309,8 @@ Camera CameraPath::camera(double time_s, Camera like) const {
         like.intrinsics.reset();
         like.projection = Projection::perspective;
     }
+    if (like.projection == Projection::orthographic && orbit_ && orbit_->ortho_height)
+        like.ortho_height = *orbit_->ortho_height;
     return like;
 }
 

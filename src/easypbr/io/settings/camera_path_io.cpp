@@ -149,9 +149,15 @@ class PathReader {
     CameraPath orbit(PathEase ease) const {
         const Json& entry = root_["orbit"];
         if (!entry.is_object()) fail("orbit: expected an object");
-        check_names(entry, {"T_world_cam", "center", "axis", "angle_deg", "duration_s"}, "orbit");
+        check_names(entry, {"T_world_cam", "center", "axis", "angle_deg", "duration_s", "ortho_height"},
+                    "orbit");
         if (!entry.contains("T_world_cam")) fail("orbit: expected T_world_cam");
-        const Camera start = Camera::from_opengl(pose(entry["T_world_cam"], "orbit").matrix());
+        Camera start = Camera::from_opengl(pose(entry["T_world_cam"], "orbit").matrix());
+        if (entry.contains("ortho_height")) {
+            start.projection = Projection::orthographic;
+            start.ortho_height = number(entry, "ortho_height", start.ortho_height, "orbit");
+            if (!(start.ortho_height > 0)) fail("orbit: expected an ortho_height above 0");
+        }
         return CameraPath::orbit(start, vector(entry, "center", Vec3d::Zero(), "orbit"),
                                  vector(entry, "axis", Vec3d::UnitY(), "orbit"),
                                  number(entry, "angle_deg", 360, "orbit"),
@@ -196,6 +202,7 @@ std::string to_json(const CameraPath& path) {
                          {"axis", list_of(orbit.axis)},
                          {"angle_deg", orbit.angle_deg},
                          {"duration_s", path.duration_s()}};
+        if (orbit.ortho_height) root["orbit"]["ortho_height"] = *orbit.ortho_height;
         return root.dump(1) + "\n";
     }
     root["closed"] = path.is_closed();
