@@ -103,7 +103,7 @@ void add_vertices(const Source& source, DrawMode kind, bool casts, DrawList& lis
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
     set_kind(source, item);
-    // Splats without data, and surfels without normals, are points.
+    // As what it is drawn: in place of what the style asks for, where the mesh lacks data for that.
     item.style.mode = kind;
     item.reaches_beyond = true;
     item.casts = casts;
