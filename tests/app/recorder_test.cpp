@@ -420,15 +420,25 @@ double nearest_border(const CameraPath& path, const Camera& like, const Mesh& me
     return nearest;
 }
 
-// Content that is much deeper than wide is seen whole from every side, and touches the picture's border from
-// one.
-TEST(Turntable, KeepsTheContentInThePicture) {
-    Scene scene;
+Mesh distant_bar() {
     Mesh bar = make_box(Vec3(0.2f, 0.3f, 4));
     bar.translate({5, 0, 0});
+    return bar;
+}
+
+Session session_of_bar(const Mesh& bar) {
+    Scene scene;
     scene.show(bar, "bar");
     Session session(scene);
     session.settings().image.size = Vec2i(96, 64);
+    return session;
+}
+
+// Content that is much deeper than wide is seen whole from every side, and touches the picture's border from
+// one.
+TEST(Turntable, KeepsTheContentInThePicture) {
+    const Mesh bar = distant_bar();
+    Session session = session_of_bar(bar);
     const CameraPath path = turntable(session, 1);
     const double nearest = nearest_border(path, session.camera(), bar);
     // The margin, 5 % of both sides together, is kept; the cylinder around the bar is a little larger than
@@ -442,12 +452,8 @@ TEST(Turntable, KeepsTheContentInThePicture) {
 
 // The height of an orthographic picture holds the content from every side; one that was chosen stays.
 TEST(Turntable, KeepsTheContentInOrthographicPictures) {
-    Scene scene;
-    Mesh bar = make_box(Vec3(0.2f, 0.3f, 4));
-    bar.translate({5, 0, 0});
-    scene.show(bar, "bar");
-    Session session(scene);
-    session.settings().image.size = Vec2i(96, 64);
+    const Mesh bar = distant_bar();
+    Session session = session_of_bar(bar);
     session.settings().camera.projection = Projection::orthographic;
     const CameraPath path = turntable(session, 1);
     const double nearest = nearest_border(path, session.camera(), bar);

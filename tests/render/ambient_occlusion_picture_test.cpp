@@ -277,19 +277,24 @@ TEST(AmbientOcclusion, PowerDarkens) {
     EXPECT_EQ(mean(0), 0);
 }
 
-// Points without normals are shaded by eye-dome lighting, and occlusion on top of it when it is asked for.
-TEST(AmbientOcclusion, DarkensRecessesOfClouds) {
-    const int n = 200;
+/// n x n points each of a floor and of a wall, 2 * scale wide.
+Mesh cloud_of_corner(int n, float scale) {
     Array3f::Dense V(2 * n * n, 3);
+    const auto count = float(n);
     for (int i = 0; i < n * n; ++i) {
-        const float u = float(i % n) / n * 2 - 1, v = float(i / n) / n;
+        const float u = float(i % n) / count * 2 - 1, v = float(i / n) / count;
         V.row(2 * i) << u, 0, v;
         V.row(2 * i + 1) << u, v, 0;
     }
     Mesh cloud;
-    cloud.set_V(Array3f(V));
+    cloud.set_V(Array3f(Array3f::Dense(V * scale)));
+    return cloud;
+}
+
+// Points without normals are shaded by eye-dome lighting, and occlusion on top of it when it is asked for.
+TEST(AmbientOcclusion, DarkensRecessesOfClouds) {
     Scene scene;
-    scene.show(cloud, "corner");
+    scene.show(cloud_of_corner(200, 1), "corner");
     app::Session session = plain_session(scene, 128);
     session.settings().ssao.enabled = automatic;
     place(session, Vec3d(0, 2, 2), Vec3d(0, 0.3, 0.3), 40);
@@ -320,18 +325,9 @@ TEST(AmbientOcclusion, DarkensRecessesOfClouds) {
 // Coordinates are rounded anew by each scale, which turns a normal of 16 bits by a step: less than 0.02 of
 // the light.
 TEST(AmbientOcclusion, OfCloudsIsTheSameAtAnyScale) {
-    const int n = 60;
     const auto visibility = [&](double scale) {
-        Array3f::Dense V(2 * n * n, 3);
-        for (int i = 0; i < n * n; ++i) {
-            const float u = float(i % n) / n * 2 - 1, v = float(i / n) / n;
-            V.row(2 * i) << u, 0, v;
-            V.row(2 * i + 1) << u, v, 0;
-        }
-        Mesh cloud;
-        cloud.set_V(Array3f(Array3f::Dense(V * float(scale))));
         Scene scene;
-        scene.show(cloud, "corner");
+        scene.show(cloud_of_corner(60, float(scale)), "corner");
         app::Session session = plain_session(scene, 64);
         session.settings().ssao.enabled = true;
         session.settings().ssao.radius = float(0.3 * scale);
