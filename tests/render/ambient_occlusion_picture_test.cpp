@@ -282,7 +282,8 @@ Mesh cloud_of_corner(int n, float scale) {
     Array3f::Dense V(2 * n * n, 3);
     const auto count = float(n);
     for (int i = 0; i < n * n; ++i) {
-        const float u = float(i % n) / count * 2 - 1, v = float(i / n) / count;
+        const int column = i % n, row = i / n;
+        const float u = float(column) / count * 2 - 1, v = float(row) / count;
         V.row(2 * i) << u, 0, v;
         V.row(2 * i + 1) << u, v, 0;
     }
