@@ -1,15 +1,19 @@
-// Cameras all around the content.
+// Cameras all around the content: on turntables, and in grids of directions.
 #include "easypbr/app/orbit_grid.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
+#include "easypbr/app/animation_player.h"
+#include "easypbr/app/recorder.h"
 #include "easypbr/core/error.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
+#include "scene/slide.h"
 
 namespace easypbr::app::orbit_grid_test {
 namespace {
@@ -131,6 +135,104 @@ TEST(OrbitGrid, RefusesWhatIsNoGrid) {
                                               {36, 3, std::nan("")}})
         EXPECT_THROW(check_orbit_grid(columns, rows, step), ArgumentError);
     EXPECT_NO_THROW(check_orbit_grid(360, 60, 2.7));
+}
+
+/// How far the corners of a mesh stay from the border of pictures of 3 : 2 all the way along a path, as a
+/// part of their halves; below 0: outside.
+double nearest_border(const CameraPath& path, const Camera& like, const Mesh& mesh) {
+    double nearest = 1;
+    for (const double t : path.times(24)) {
+        const Camera camera = path.camera(t, like);
+        const Mat4d P = camera.projection_matrix(1.5) * camera.view();
+        for (Eigen::Index i = 0; i < mesh.V().rows(); ++i) {
+            const Vec3d world = mesh.T_world_mesh() * mesh.V().row(i).transpose().cast<double>();
+            const Eigen::Vector4d clip = P * world.homogeneous();
+            if (!(clip.w() > 0)) return -1;
+            const double reach = clip.head<2>().cwiseAbs().maxCoeff() / clip.w();
+            nearest = std::min(nearest, 1 - reach);
+        }
+    }
+    return nearest;
+}
+
+Mesh distant_bar() {
+    Mesh bar = make_box(Vec3(0.2f, 0.3f, 4));
+    bar.translate({5, 0, 0});
+    return bar;
+}
+
+Session session_of_bar(const Mesh& bar) {
+    Scene scene;
+    scene.show(bar, "bar");
+    Session session(scene);
+    session.settings().image.size = Vec2i(96, 64);
+    return session;
+}
+
+// Content that is much deeper than wide is seen whole from every side, and touches the picture's border from
+// one.
+TEST(Turntable, KeepsTheContentInThePicture) {
+    const Mesh bar = distant_bar();
+    Session session = session_of_bar(bar);
+    const CameraPath path = turntable(session, 1);
+    const double nearest = nearest_border(path, session.camera(), bar);
+    // The margin, 5 % of both sides together, is kept; the cylinder around the bar is a little larger than
+    // it.
+    EXPECT_GT(nearest, 0.049);
+    EXPECT_LT(nearest, 0.09);
+    // A camera that was chosen stays where it is.
+    session.set_camera(Camera::look_at(Vec3d(5, 0, 9), Vec3d(5, 0, 0)));
+    EXPECT_LT((turntable(session, 1).pose(0).translation() - Vec3d(5, 0, 9)).norm(), 1e-12);
+}
+
+// The height of an orthographic picture holds the content from every side; one that was chosen stays.
+TEST(Turntable, KeepsTheContentInOrthographicPictures) {
+    const Mesh bar = distant_bar();
+    Session session = session_of_bar(bar);
+    session.settings().camera.projection = Projection::orthographic;
+    const CameraPath path = turntable(session, 1);
+    const double nearest = nearest_border(path, session.camera(), bar);
+    EXPECT_GT(nearest, 0.049);
+    EXPECT_LT(nearest, 0.09);
+    session.settings().camera.ortho_height = 1;
+    EXPECT_EQ(turntable(session, 1).camera(0.3, session.camera()).ortho_height, 1);
+}
+
+// A small box goes 2 units along x in 4 seconds. A turn while it plays shows it whole wherever it is, around
+// the middle of its way; it is afterwards where it was.
+TEST(Turntable, KeepsWhatAnAnimationMovesInThePicture) {
+    Scene scene;
+    Mesh box = make_box(Vec3(0.2f, 0.2f, 0.2f));
+    scene.show(box, "box");
+    AnimationNode node;
+    node.mesh = box;
+    Clock clock;
+    AnimationPlayer player(clock);
+    player.add("box", Animations({{node}, {}, {}, {slide("slide")}}));
+    Session session(scene);
+    session.settings().image.size = Vec2i(96, 64);
+    const Vec3d at_rest = turntable(session, 4).pose(0).translation();
+    const auto begin = [&](const CameraPath& path) { return Vec3d(path.pose(0).translation()); };
+    EXPECT_EQ(begin(turntable(session, 4, player)), at_rest) << "nothing plays";
+    player.play(0);
+    // A turn of more than one time around shows no more.
+    for (const double duration_s : {4.0, 9.0}) {
+        const CameraPath path = turntable(session, duration_s, player);
+        EXPECT_EQ(box.T_parent_mesh().translation().x(), 0);
+        const Camera like = session.camera();
+        double nearest = 1;
+        for (const double x : {0.0, 1.0, 2.0}) {
+            box.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(x, 0, 0)));
+            nearest = std::min(nearest, nearest_border(path, like, box));
+        }
+        box.set_T_parent_mesh(Eigen::Affine3d::Identity());
+        // The margin, 5 % of both sides together; the cylinder around all poses is a little larger than they.
+        EXPECT_GT(nearest, 0.049);
+        EXPECT_LT(nearest, 0.15);
+        EXPECT_NEAR((path.pose(0).translation() + path.pose(duration_s / 2).translation()).x() / 2, 1, 1e-6);
+    }
+    player.pause();
+    EXPECT_EQ(begin(turntable(session, 4, player)), at_rest) << "it is paused";
 }
 
 }  // namespace
